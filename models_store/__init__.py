@@ -1,0 +1,1 @@
+"""What lasts: tables, artefacts, jobs, and the library of procedural models."""

@@ -1,0 +1,76 @@
+"""Shapewright: what an unknown 3D mesh is, and which parameter values rebuild it.
+
+Names are loaded when first used, so ``import shapewright`` takes milliseconds.
+"""
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from shapewright.classification import (
+        Classification,
+        Classifier,
+        TrainedClassifier,
+        TrainingSettings,
+        train_classifier,
+    )
+    from shapewright.errors import Cancelled, ShapewrightError
+    from shapewright.estimation import Estimation, EstimationSettings, estimate
+    from shapewright.mesh import TriangleMesh
+    from shapewright.mesh_file import load_mesh, parse_mesh
+    from shapewright.modeling import CompiledModel, Parameter, ProceduralModel, Recorder
+    from shapewright.rendering import render_images, render_mesh
+
+_HOMES = {
+    "Cancelled": "errors",
+    "Classification": "classification",
+    "Classifier": "classification",
+    "CompiledModel": "modeling",
+    "Estimation": "estimation",
+    "EstimationSettings": "estimation",
+    "Parameter": "modeling",
+    "ProceduralModel": "modeling",
+    "Recorder": "modeling",
+    "ShapewrightError": "errors",
+    "TrainedClassifier": "classification",
+    "TrainingSettings": "classification",
+    "TriangleMesh": "mesh",
+    "estimate": "estimation",
+    "load_mesh": "mesh_file",
+    "parse_mesh": "mesh_file",
+    "render_images": "rendering",
+    "render_mesh": "rendering",
+    "train_classifier": "classification",
+}
+
+__all__ = [  # noqa: RUF022 - the same names as _HOMES, in its order
+    "Cancelled",
+    "Classification",
+    "Classifier",
+    "CompiledModel",
+    "Estimation",
+    "EstimationSettings",
+    "Parameter",
+    "ProceduralModel",
+    "Recorder",
+    "ShapewrightError",
+    "TrainedClassifier",
+    "TrainingSettings",
+    "TriangleMesh",
+    "estimate",
+    "load_mesh",
+    "parse_mesh",
+    "render_images",
+    "render_mesh",
+    "train_classifier",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

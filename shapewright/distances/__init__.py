@@ -1,0 +1,1 @@
+"""Distances between meshes: panorama, surface, z-buffer."""

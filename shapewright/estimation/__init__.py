@@ -1,0 +1,1 @@
+"""Estimating the parameters of a query (paper section 3.3)."""
