@@ -1,0 +1,221 @@
+"""Triangle meshes: the value that queries, instances and fitted meshes are passed around as.
+
+Polygon soup is normal here: nothing asks for a closed, oriented or manifold mesh. Reading files is in
+:mod:`shapewright.mesh_file`.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal, Self, get_args
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from shapewright.errors import MeshError
+
+MeshFileType = Literal["glb", "obj", "off", "ply", "stl"]
+"""The file types a mesh can be written as."""
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleMesh:
+    """Vertices and triangles, in the units of whoever made them.
+
+    Args:
+        vertices: positions; kept as C-contiguous float64.
+        faces: vertex indices of each triangle; kept as C-contiguous int64.
+
+    The arrays are not copied when they already have that form. They are the value of the mesh: do not write
+    into them, derived figures are computed once and kept.
+
+    Raises:
+        MeshError: wrong shapes, no faces, a coordinate that is not finite, an index out of range.
+    """
+
+    vertices: Float[np.ndarray, "V 3"]
+    faces: Int[np.ndarray, "F 3"]
+
+    def __post_init__(self) -> None:
+        vertices = np.asarray(self.vertices)
+        faces = np.asarray(self.faces)
+        if vertices.ndim != 2 or vertices.shape[1] != 3 or vertices.dtype.kind not in "fiu":
+            raise MeshError(f"expected numbers of shape (V, 3), got {vertices.shape}", where="vertices")
+        if faces.ndim != 2 or faces.shape[1] != 3 or (faces.size and faces.dtype.kind not in "iu"):
+            raise MeshError(f"expected integers of shape (F, 3), got {faces.shape}", where="faces")
+        if len(faces) == 0:
+            raise MeshError("the mesh has no faces", where="faces")
+        vertices = np.ascontiguousarray(vertices, dtype=np.float64)
+        faces = np.ascontiguousarray(faces, dtype=np.int64)
+        finite = np.isfinite(vertices).all(axis=1)
+        if not finite.all():
+            raise MeshError("a coordinate is NaN or infinite", where=f"vertices[{int(np.argmin(finite))}]")
+        in_range = ((faces >= 0) & (faces < len(vertices))).all(axis=1)
+        if not in_range.all():
+            face = int(np.argmin(in_range))
+            raise MeshError(
+                f"index out of range: {faces[face].tolist()} of {len(vertices)} vertices",
+                where=f"faces[{face}]",
+            )
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "faces", faces)
+
+    @property
+    def triangles(self) -> Float[np.ndarray, "F 3 3"]:
+        """Corner positions of each triangle."""
+        return self.vertices[self.faces]
+
+    @cached_property
+    def _crosses(self) -> Float[np.ndarray, "F 3"]:
+        corners = self.triangles
+        return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+    @cached_property
+    def face_areas(self) -> Float[np.ndarray, " F"]:
+        """Area of each triangle, in squared units of the coordinates."""
+        return np.asarray(np.linalg.norm(self._crosses, axis=1)) * 0.5
+
+    @cached_property
+    def face_normals(self) -> Float[np.ndarray, "F 3"]:
+        """Unit normals by the winding of each triangle; zero where a triangle has no area."""
+        doubled = 2.0 * self.face_areas[:, None]
+        return np.divide(self._crosses, doubled, out=np.zeros_like(self._crosses), where=doubled > 0)
+
+    @property
+    def area(self) -> float:
+        """Total surface area."""
+        return float(self.face_areas.sum())
+
+    @cached_property
+    def centroid(self) -> Float[np.ndarray, " 3"]:
+        """Area-weighted mean of the surface.
+
+        Raises:
+            MeshError: the surface has no area.
+        """
+        if not self.area > 0:
+            raise MeshError("the surface has no area", where="faces")
+        return np.asarray(self.face_areas @ self.triangles.mean(axis=1) / self.area)
+
+    @property
+    def vertex_mean(self) -> Float[np.ndarray, " 3"]:
+        """Plain mean of the vertices (the paper's "center of mass", section 3.3)."""
+        return np.asarray(self.vertices.mean(axis=0))
+
+    @property
+    def bounds(self) -> Float[np.ndarray, "2 3"]:
+        """Smallest and largest coordinates."""
+        return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+
+    @cached_property
+    def is_watertight(self) -> bool:
+        """Whether every edge belongs to exactly two triangles (vertices are told apart by index)."""
+        edges = np.sort(self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        keys = edges[:, 0] * len(self.vertices) + edges[:, 1]
+        return bool((np.unique(keys, return_counts=True)[1] == 2).all())
+
+    def transformed(
+        self,
+        rotation: Float[np.ndarray, "3 3"],
+        translation: Float[np.ndarray, " 3"],
+        scale: float = 1.0,
+    ) -> Self:
+        """The mesh with every vertex ``v`` at ``scale * rotation @ v + translation``."""
+        return type(self)(scale * (self.vertices @ rotation.T) + translation, self.faces)
+
+    def normalized(self) -> "Normalization":
+        """Vertex mean to the origin, all coordinates within [-1, 1], one of them at the end (section 3.3).
+
+        Raises:
+            MeshError: all vertices are one point.
+        """
+        centred = self.vertices - self.vertex_mean
+        extent = float(np.abs(centred).max())
+        if not extent > 0 or not np.isfinite(1.0 / extent):
+            raise MeshError("all vertices are one point", where="vertices")
+        scale = 1.0 / extent
+        return Normalization(TriangleMesh(centred * scale, self.faces), -scale * self.vertex_mean, scale)
+
+    def cleaned(self) -> Self:
+        """The same surface without what carries none of it; the form in which files are handed out.
+
+        - Vertices at exactly the same position become one (as in STL, where each triangle brings its own).
+        - Triangles without area are dropped: a repeated corner, or an area below 1e-15 of the squared
+          diagonal of the bounding box.
+        - Vertices that no triangle uses are dropped: they would move the vertex mean.
+
+        Kept on purpose: winding, repeated triangles, holes, non-manifold edges, separate parts.
+
+        Raises:
+            MeshError: nothing with an area is left.
+        """
+        positions, merged = np.unique(self.vertices, axis=0, return_inverse=True)
+        first = np.full(len(positions), len(self.vertices), dtype=np.int64)
+        np.minimum.at(first, merged.ravel(), np.arange(len(self.vertices)))
+        faces = first[merged.ravel()][self.faces]
+        a, b, c = (self.vertices[faces[:, k]] for k in range(3))
+        diagonal = float(np.linalg.norm(self.bounds[1] - self.bounds[0]))
+        areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        faces = faces[areas > 1e-15 * diagonal**2]
+        if len(faces) == 0:
+            raise MeshError("no face has an area", where="faces")
+        used, renumbered = np.unique(faces, return_inverse=True)
+        return type(self)(self.vertices[used], renumbered.reshape(-1, 3))
+
+    @classmethod
+    def from_trimesh(cls, mesh: Any) -> Self:
+        """Take vertices and faces of a ``trimesh.Trimesh`` as they are (copied)."""
+        return cls(np.array(mesh.vertices, dtype=np.float64), np.array(mesh.faces, dtype=np.int64))
+
+    def to_trimesh(self) -> Any:
+        """A ``trimesh.Trimesh`` with copies of the same vertices and faces, unprocessed."""
+        import trimesh
+
+        return trimesh.Trimesh(self.vertices.copy(), self.faces.copy(), process=False)
+
+    def to_bytes(self, file_type: MeshFileType) -> bytes:
+        """The mesh as the bytes of a file; OBJ and OFF give every float64 back, the others keep float32.
+
+        Raises:
+            MeshError: the type is none of glb, obj, off, ply, stl.
+        """
+        if file_type not in get_args(MeshFileType):
+            raise MeshError(f"cannot write {file_type!r}; known: {', '.join(get_args(MeshFileType))}")
+        if file_type == "obj":
+            rows = [
+                *self._lines("v %.17g %.17g %.17g", self.vertices),
+                *self._lines("f %d %d %d", self.faces + 1),
+            ]
+            return ("\n".join(rows) + "\n").encode()
+        if file_type == "off":
+            counts = f"OFF\n{len(self.vertices)} {len(self.faces)} 0"
+            rows = [*self._lines("%.17g %.17g %.17g", self.vertices), *self._lines("3 %d %d %d", self.faces)]
+            return ("\n".join([counts, *rows]) + "\n").encode()
+        return bytes(self.to_trimesh().export(file_type=file_type))
+
+    @staticmethod
+    def _lines(pattern: str, rows: np.ndarray) -> list[str]:
+        return [pattern % tuple(row) for row in rows.tolist()]
+
+    def save(self, path: str | Path) -> None:
+        """Write a file whose type is the ending of its name.
+
+        Raises:
+            MeshError: the ending is none of .glb .obj .off .ply .stl.
+            OSError: the file cannot be written.
+        """
+        data = self.to_bytes(Path(path).suffix.lower().lstrip("."))  # type: ignore[arg-type]
+        Path(path).write_bytes(data)
+
+
+@dataclass(frozen=True, eq=False)
+class Normalization:
+    """A mesh in the shared coordinate system, and how it came there.
+
+    ``mesh.vertices == scale * original + translation``, what ``original.transformed(identity, translation,
+    scale)`` does; the way back is ``(mesh.vertices - translation) / scale``.
+    """
+
+    mesh: TriangleMesh
+    translation: Float[np.ndarray, " 3"]
+    scale: float
