@@ -63,12 +63,12 @@ class TriangleMesh:
     @property
     def triangles(self) -> Float[np.ndarray, "F 3 3"]:
         """Corner positions of each triangle."""
-        return self.vertices[self.faces]
+        return np.asarray(self.vertices[self.faces])
 
     @cached_property
     def _crosses(self) -> Float[np.ndarray, "F 3"]:
         corners = self.triangles
-        return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        return np.asarray(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
 
     @cached_property
     def face_areas(self) -> Float[np.ndarray, " F"]:
@@ -79,7 +79,8 @@ class TriangleMesh:
     def face_normals(self) -> Float[np.ndarray, "F 3"]:
         """Unit normals by the winding of each triangle; zero where a triangle has no area."""
         doubled = 2.0 * self.face_areas[:, None]
-        return np.divide(self._crosses, doubled, out=np.zeros_like(self._crosses), where=doubled > 0)
+        zeros = np.zeros_like(self._crosses)
+        return np.asarray(np.divide(self._crosses, doubled, out=zeros, where=doubled > 0))
 
     @property
     def area(self) -> float:
@@ -149,10 +150,12 @@ class TriangleMesh:
         Raises:
             MeshError: nothing with an area is left.
         """
-        positions, merged = np.unique(self.vertices, axis=0, return_inverse=True)
-        first = np.full(len(positions), len(self.vertices), dtype=np.int64)
-        np.minimum.at(first, merged.ravel(), np.arange(len(self.vertices)))
-        faces = first[merged.ravel()][self.faces]
+        order = np.lexsort(self.vertices.T)  # stable: of equal positions the first stays first
+        ordered = self.vertices[order]
+        differs = np.concatenate([[True], (ordered[1:] != ordered[:-1]).any(axis=1)])
+        first = np.empty(len(order), dtype=np.int64)
+        first[order] = order[np.flatnonzero(differs)[np.cumsum(differs) - 1]]
+        faces = first[self.faces]
         a, b, c = (self.vertices[faces[:, k]] for k in range(3))
         diagonal = float(np.linalg.norm(self.bounds[1] - self.bounds[0]))
         areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
@@ -182,20 +185,16 @@ class TriangleMesh:
         if file_type not in get_args(MeshFileType):
             raise MeshError(f"cannot write {file_type!r}; known: {', '.join(get_args(MeshFileType))}")
         if file_type == "obj":
-            rows = [
-                *self._lines("v %.17g %.17g %.17g", self.vertices),
-                *self._lines("f %d %d %d", self.faces + 1),
-            ]
-            return ("\n".join(rows) + "\n").encode()
+            return self._text("v %.17g %.17g %.17g", "f %d %d %d", first_index=1)
         if file_type == "off":
-            counts = f"OFF\n{len(self.vertices)} {len(self.faces)} 0"
-            rows = [*self._lines("%.17g %.17g %.17g", self.vertices), *self._lines("3 %d %d %d", self.faces)]
-            return ("\n".join([counts, *rows]) + "\n").encode()
+            counts = f"OFF\n{len(self.vertices)} {len(self.faces)} 0\n"
+            return counts.encode() + self._text("%.17g %.17g %.17g", "3 %d %d %d", first_index=0)
         return bytes(self.to_trimesh().export(file_type=file_type))
 
-    @staticmethod
-    def _lines(pattern: str, rows: np.ndarray) -> list[str]:
-        return [pattern % tuple(row) for row in rows.tolist()]
+    def _text(self, vertex_line: str, face_line: str, *, first_index: int) -> bytes:
+        lines = [vertex_line % tuple(row) for row in self.vertices.tolist()]
+        lines += [face_line % tuple(row) for row in (self.faces + first_index).tolist()]
+        return ("\n".join(lines) + "\n").encode()
 
     def save(self, path: str | Path) -> None:
         """Write a file whose type is the ending of its name.
