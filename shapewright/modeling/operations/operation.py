@@ -1,0 +1,119 @@
+"""What every operation is: a value with fields, that changes a topology and tells how it moves vertices."""
+
+import dataclasses
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar, Protocol, Self
+
+import numpy as np
+from jaxtyping import Float
+
+from shapewright.errors import ModelError
+from shapewright.modeling.control_mesh import ControlMesh
+from shapewright.modeling.fields import FieldKind
+from shapewright.modeling.frames import Positions
+
+Amounts = Float[np.ndarray, " B"]
+Quantities = Mapping[str, Amounts]
+"""The procedure parameters of an operation (Table 1), one number for each instance of a batch."""
+Mode = Callable[[Quantities, Amounts], Quantities]
+"""How a parameter x changes the procedure parameters; x = 1 changes nothing."""
+
+
+class Step(Protocol):
+    """The geometric half of an operation, bound to the topology in which it was made."""
+
+    def move(self, positions: Positions, quantities: Quantities) -> None:
+        """Set or change rows of ``positions`` (V, B, 3) in place."""
+
+
+class NoMove:
+    """The step of an operation that only changes the topology."""
+
+    def move(self, positions: Positions, quantities: Quantities) -> None:
+        """Move nothing."""
+
+
+NO_MOVE = NoMove()
+
+
+@dataclasses.dataclass(frozen=True)
+class Operation(ABC):
+    """A modelling operation as it stands in a procedural model.
+
+    Attributes:
+        kind: its name in a document.
+        quantities: the fields that are procedure parameters in the sense of Table 1.
+        modes: the ways in which an inserted parameter x can act on them.
+    """
+
+    kind: ClassVar[str]
+    quantities: ClassVar[tuple[str, ...]] = ()
+    modes: ClassVar[Mapping[str, Mode]] = {}
+
+    @abstractmethod
+    def apply(self, mesh: ControlMesh) -> Step:
+        """Change the topology and return how vertices move.
+
+        Raises:
+            ModelError: an element does not exist, or the change is impossible there.
+        """
+
+    @classmethod
+    def field_kinds(cls) -> dict[str, FieldKind]:
+        """Return the fields of the document in the order of their declaration."""
+        return {f.name: f.metadata["kind"] for f in dataclasses.fields(cls)}
+
+    @classmethod
+    def from_document(cls, document: Mapping[str, Any], where: str) -> Self:
+        """Make the operation from its JSON object (without ``op``).
+
+        Raises:
+            ModelError: a field is missing, unknown or wrong; ``where`` says which.
+        """
+        kinds = cls.field_kinds()
+        for name in document:
+            if name not in kinds:
+                raise ModelError(f"{cls.kind} has no field {name!r}", where=where)
+        for f in dataclasses.fields(cls):
+            if f.default is dataclasses.MISSING and f.name not in document:
+                raise ModelError(f"{cls.kind} needs the field {f.name!r}", where=where)
+        values = {name: kinds[name].read(value, f"{where}.{name}") for name, value in document.items()}
+        try:
+            return cls(**values)
+        except ModelError as error:
+            raise ModelError(error.message, where=where) from None
+
+    def to_document(self) -> dict[str, Any]:
+        """Return the JSON object of the operation, every field written."""
+        kinds = self.field_kinds()
+        return {"op": self.kind, **{name: kind.write(getattr(self, name)) for name, kind in kinds.items()}}
+
+    @classmethod
+    def schema(cls) -> dict[str, Any]:
+        """Return the JSON schema of the operation's object."""
+        required = [f.name for f in dataclasses.fields(cls) if f.default is dataclasses.MISSING]
+        return {
+            "type": "object",
+            "description": (cls.__doc__ or "").strip().splitlines()[0],
+            "properties": {
+                "op": {"const": cls.kind},
+                **{name: kind.schema for name, kind in cls.field_kinds().items()},
+            },
+            "required": ["op", *required],
+            "additionalProperties": False,
+        }
+
+
+def multiplies(*names: str) -> Mode:
+    """Return the mode x times the named quantities."""
+
+    def mode(quantities: Quantities, x: Amounts) -> Quantities:
+        return {**quantities, **{name: quantities[name] * x for name in names}}
+
+    return mode
+
+
+def turns_phi(quantities: Quantities, x: Amounts) -> Quantities:
+    """Return the mode (rho, phi + 180 (x - 1), z) of Table 1."""
+    return {**quantities, "phi_deg": quantities["phi_deg"] + 180.0 * (x - 1.0)}

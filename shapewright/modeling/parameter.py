@@ -1,0 +1,145 @@
+"""Named parameters of a procedural model."""
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from shapewright.errors import ModelError
+from shapewright.modeling.fields import MAX_MAGNITUDE, read_number, read_object
+
+NAME_PATTERN = "^[a-z][a-z0-9_]{0,63}$"
+MAX_LABEL = 200
+
+
+@dataclass(frozen=True)
+class ParameterTarget:
+    """An operation that a parameter changes, and the way in which it does (a mode of that operation)."""
+
+    operation: int
+    mode: str
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number x that a user varies; x = 1 is the base model (Table 1; a group has several targets).
+
+    Attributes:
+        name: identifier.
+        label: what people read.
+        minimum: smallest x, at most 1.
+        maximum: largest x, at least 1.
+        targets: what x acts on.
+        unit: unit of ``base_value``, if it has one.
+        base_value: what x = 1 means to people; x times it is shown beside x. ``None``: x is shown alone.
+    """
+
+    name: str
+    label: str
+    minimum: float
+    maximum: float
+    targets: tuple[ParameterTarget, ...]
+    unit: str | None = None
+    base_value: float | None = None
+
+    def __post_init__(self) -> None:
+        if not re.fullmatch(NAME_PATTERN, self.name):
+            raise ModelError(f"{self.name!r} is no parameter name: small letters, digits and _ only")
+        if not self.label.strip() or len(self.label) > MAX_LABEL:
+            raise ModelError(f"parameter {self.name!r} needs a label of at most {MAX_LABEL} characters")
+        if not (math.isfinite(self.minimum) and math.isfinite(self.maximum)):
+            raise ModelError(f"the range of {self.name!r} is not finite")
+        if not self.minimum < self.maximum or not self.minimum <= 1.0 <= self.maximum:
+            bounds = f"[{self.minimum:g}, {self.maximum:g}]"
+            raise ModelError(f"the range {bounds} of {self.name!r} excludes 1, the base model, or is empty")
+        if max(abs(self.minimum), abs(self.maximum)) > MAX_MAGNITUDE:
+            raise ModelError(f"the range of {self.name!r} is beyond {MAX_MAGNITUDE:g}")
+        if not self.targets:
+            raise ModelError(f"parameter {self.name!r} changes no operation")
+
+    @classmethod
+    def from_document(cls, document: Any, where: str) -> "Parameter":
+        """Make the parameter from its JSON object.
+
+        Raises:
+            ModelError: a field is missing, unknown or wrong; ``where`` says which.
+        """
+        item = read_object(document, where, {"name", "label", "range", "targets", "unit", "base_value"})
+        for needed in ("name", "label", "range", "targets"):
+            if needed not in item:
+                raise ModelError(f"a parameter needs the field {needed!r}", where=where)
+        for text in ("name", "label"):
+            if not isinstance(item[text], str):
+                raise ModelError("a text is needed", where=f"{where}.{text}")
+        unit, base_value = item.get("unit"), item.get("base_value")
+        if unit is not None and (not isinstance(unit, str) or len(unit) > 20):
+            raise ModelError("a text of at most 20 characters is needed", where=f"{where}.unit")
+        bounds = item["range"]
+        if not isinstance(bounds, list) or len(bounds) != 2:
+            raise ModelError("a range is a list of two numbers", where=f"{where}.range")
+        if not isinstance(item["targets"], list):
+            raise ModelError("a list is needed", where=f"{where}.targets")
+        minimum, maximum = (read_number(bound, f"{where}.range[{i}]") for i, bound in enumerate(bounds))
+        try:
+            return cls(
+                name=item["name"],
+                label=item["label"],
+                minimum=minimum,
+                maximum=maximum,
+                targets=tuple(_read_target(t, f"{where}.targets[{i}]") for i, t in enumerate(item["targets"])),
+                unit=unit,
+                base_value=None if base_value is None else read_number(base_value, f"{where}.base_value"),
+            )
+        except ModelError as error:
+            raise ModelError(error.message, where=error.where or where) from None
+
+    def to_document(self) -> dict[str, Any]:
+        """Return the JSON object."""
+        return {
+            "name": self.name,
+            "label": self.label,
+            "unit": self.unit,
+            "base_value": self.base_value,
+            "range": [float(self.minimum), float(self.maximum)],
+            "targets": [{"operation": t.operation, "mode": t.mode} for t in self.targets],
+        }
+
+    @staticmethod
+    def schema() -> Mapping[str, Any]:
+        """Return the JSON schema of the object."""
+        return {
+            "type": "object",
+            "properties": {
+                "name": {"type": "string", "pattern": NAME_PATTERN},
+                "label": {"type": "string", "minLength": 1, "maxLength": MAX_LABEL},
+                "unit": {"type": ["string", "null"], "maxLength": 20},
+                "base_value": {"type": ["number", "null"]},
+                "range": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2},
+                "targets": {
+                    "type": "array",
+                    "minItems": 1,
+                    "items": {
+                        "type": "object",
+                        "properties": {
+                            "operation": {"type": "integer", "minimum": 0},
+                            "mode": {"type": "string"},
+                        },
+                        "required": ["operation", "mode"],
+                        "additionalProperties": False,
+                    },
+                },
+            },
+            "required": ["name", "label", "range", "targets"],
+            "additionalProperties": False,
+        }
+
+
+def _read_target(value: Any, where: str) -> ParameterTarget:
+    item = read_object(value, where, {"operation", "mode"})
+    operation, mode = item.get("operation"), item.get("mode")
+    if isinstance(operation, bool) or not isinstance(operation, int) or operation < 0:
+        raise ModelError("the index of an operation is needed", where=f"{where}.operation")
+    if not isinstance(mode, str):
+        raise ModelError("a mode of the operation is needed", where=f"{where}.mode")
+    return ParameterTarget(operation, mode)

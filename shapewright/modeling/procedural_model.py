@@ -1,0 +1,224 @@
+"""The procedural model: a blueprint of a class as data, read and written as JSON."""
+
+import hashlib
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from shapewright.errors import ModelError
+from shapewright.modeling.compiled import CompiledModel
+from shapewright.modeling.fields import read_object
+from shapewright.modeling.operations import OPERATIONS, Base, Operation
+from shapewright.modeling.parameter import NAME_PATTERN, Parameter
+from shapewright.modeling.upgrade import FORMAT, VERSION, upgrade_document
+
+MAX_OPERATIONS = 5_000
+MAX_PARAMETERS = 200
+MAX_DOCUMENT_BYTES = 16 * 2**20
+MAX_DESCRIPTION = 5_000
+
+
+@dataclass(frozen=True)
+class ProceduralModel:
+    """A base mesh, an ordered list of modelling operations, and named parameters (paper section 3).
+
+    Attributes:
+        name: identifier of the model.
+        class_name: the class whose blueprint it is; several models may share one.
+        operations: at least one; the first is a base.
+        parameters: what can be varied.
+        description: for people.
+        closed: whether every instance is meant to be a closed surface; checked against the topology.
+    """
+
+    name: str
+    class_name: str
+    operations: tuple[Operation, ...]
+    parameters: tuple[Parameter, ...] = ()
+    description: str = ""
+    closed: bool = True
+
+    def __post_init__(self) -> None:
+        if not self.operations or not isinstance(self.operations[0], Base):
+            raise ModelError("the first operation must be a base", where="operations")
+        if len(self.operations) > MAX_OPERATIONS:
+            raise ModelError(f"more than {MAX_OPERATIONS} operations", where="operations")
+        if len(self.parameters) > MAX_PARAMETERS:
+            raise ModelError(f"more than {MAX_PARAMETERS} parameters", where="parameters")
+        seen: set[str] = set()
+        for i, parameter in enumerate(self.parameters):
+            if parameter.name in seen:
+                raise ModelError(f"a second parameter {parameter.name!r}", where=f"parameters[{i}].name")
+            seen.add(parameter.name)
+            for j, target in enumerate(parameter.targets):
+                place = f"parameters[{i}].targets[{j}]"
+                if target.operation >= len(self.operations):
+                    raise ModelError(f"there is no operation {target.operation}", where=f"{place}.operation")
+                operation = self.operations[target.operation]
+                if target.mode not in operation.modes:
+                    known = ", ".join(operation.modes) or "none"
+                    raise ModelError(
+                        f"{operation.kind} has no mode {target.mode!r}; it has: {known}",
+                        where=f"{place}.mode",
+                    )
+
+    def compile(self) -> CompiledModel:
+        """Build the topology once; the result evaluates batches of parameters.
+
+        Raises:
+            ModelError: an operation names an element that does not exist yet, or is impossible there; or the mesh
+                is open though ``closed`` says that it is not.
+        """
+        compiled = CompiledModel(self)
+        if self.closed and not compiled.is_closed:
+            raise ModelError("the model says that it is closed, but its mesh has open edges", where="closed")
+        return compiled
+
+    # ------------------------------------------------------------------ document
+
+    @classmethod
+    def from_json(cls, text: str | bytes) -> "ProceduralModel":
+        """Read a document of any version up to this one.
+
+        Raises:
+            ModelError: broken JSON, or a document that does not fit the format; ``where`` says the place.
+        """
+        if len(text) > MAX_DOCUMENT_BYTES:
+            raise ModelError(f"a model of more than {MAX_DOCUMENT_BYTES} bytes is refused")
+        try:
+            document = json.loads(text, parse_constant=_refuse_constant)
+        except json.JSONDecodeError as error:
+            raise ModelError(error.msg, where=f"line {error.lineno} column {error.colno}") from None
+        except (UnicodeDecodeError, RecursionError, ValueError) as error:
+            raise ModelError(f"not a JSON text: {error}") from None
+        return cls.from_document(document)
+
+    @classmethod
+    def from_document(cls, document: Any) -> "ProceduralModel":
+        """Make the model from a JSON object.
+
+        Raises:
+            ModelError: the object does not fit the format; ``where`` says the place.
+        """
+        item = read_object(upgrade_document(document), "document", set(_PROPERTIES))
+        for needed in ("name", "class", "operations"):
+            if needed not in item:
+                raise ModelError(f"the field {needed!r} is missing", where="document")
+        for text in ("name", "class"):
+            _check_name(item[text], text)
+        description, closed = item.get("description", ""), item.get("closed", True)
+        if not isinstance(description, str) or len(description) > MAX_DESCRIPTION:
+            raise ModelError(f"a text of at most {MAX_DESCRIPTION} characters is needed", where="description")
+        if not isinstance(closed, bool):
+            raise ModelError("true or false is needed", where="closed")
+        for part in ("operations", "parameters"):
+            if not isinstance(item.get(part, []), list):
+                raise ModelError("a list is needed", where=part)
+        if len(item["operations"]) > MAX_OPERATIONS:
+            raise ModelError(f"more than {MAX_OPERATIONS} operations", where="operations")
+        return cls(
+            name=item["name"],
+            class_name=item["class"],
+            operations=tuple(_read_operation(op, f"operations[{i}]") for i, op in enumerate(item["operations"])),
+            parameters=tuple(
+                Parameter.from_document(p, f"parameters[{i}]") for i, p in enumerate(item.get("parameters", []))
+            ),
+            description=description,
+            closed=closed,
+        )
+
+    @classmethod
+    def load(cls, path: Path | str) -> "ProceduralModel":
+        """Read a file.
+
+        Raises:
+            ModelError: the file cannot be read or does not fit the format.
+        """
+        try:
+            return cls.from_json(Path(path).read_bytes())
+        except OSError as error:
+            raise ModelError(f"cannot be read: {error.strerror}", where=str(path)) from None
+
+    def to_document(self) -> dict[str, Any]:
+        """Return the JSON object of the model."""
+        return {
+            "format": FORMAT,
+            "version": VERSION,
+            "name": self.name,
+            "class": self.class_name,
+            "description": self.description,
+            "closed": self.closed,
+            "operations": [operation.to_document() for operation in self.operations],
+            "parameters": [parameter.to_document() for parameter in self.parameters],
+        }
+
+    def to_json(self) -> str:
+        """Return the canonical text: equal models have equal texts, with one operation or parameter a line."""
+        document = self.to_document()
+        lines = []
+        for key, value in document.items():
+            if isinstance(value, list):
+                items = ",\n".join(f"    {json.dumps(item, ensure_ascii=False)}" for item in value)
+                lines.append(f"  {json.dumps(key)}: [\n{items}\n  ]" if value else f"  {json.dumps(key)}: []")
+            else:
+                lines.append(f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}")
+        return "{\n" + ",\n".join(lines) + "\n}\n"
+
+    def save(self, path: Path | str) -> None:
+        """Write the canonical text to a file."""
+        Path(path).write_text(self.to_json(), encoding="utf-8")
+
+    @property
+    def digest(self) -> str:
+        """The content address: SHA-256 of the canonical text, in hexadecimal."""
+        return hashlib.sha256(self.to_json().encode()).hexdigest()
+
+
+def json_schema() -> Mapping[str, Any]:
+    """Return the JSON schema of a document (published as ``openapi/procedural-model.schema.json``)."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Shapewright procedural model",
+        "type": "object",
+        "properties": _PROPERTIES,
+        "required": ["format", "version", "name", "class", "operations"],
+        "additionalProperties": False,
+    }
+
+
+_PROPERTIES: dict[str, Any] = {
+    "format": {"const": FORMAT},
+    "version": {"const": VERSION},
+    "name": {"type": "string", "pattern": NAME_PATTERN},
+    "class": {"type": "string", "pattern": NAME_PATTERN},
+    "description": {"type": "string", "maxLength": MAX_DESCRIPTION},
+    "closed": {"type": "boolean"},
+    "operations": {
+        "type": "array",
+        "minItems": 1,
+        "maxItems": MAX_OPERATIONS,
+        "items": {"oneOf": [operation.schema() for operation in OPERATIONS.values()]},
+    },
+    "parameters": {"type": "array", "maxItems": MAX_PARAMETERS, "items": Parameter.schema()},
+}
+
+
+def _read_operation(value: Any, where: str) -> Operation:
+    if not isinstance(value, dict):
+        raise ModelError("an object is needed", where=where)
+    kind = value.get("op")
+    if not isinstance(kind, str) or kind not in OPERATIONS:
+        raise ModelError(f"unknown operation {kind!r}; there are: {', '.join(OPERATIONS)}", where=f"{where}.op")
+    return OPERATIONS[kind].from_document({k: v for k, v in value.items() if k != "op"}, where)
+
+
+def _check_name(value: Any, where: str) -> None:
+    if not isinstance(value, str) or not re.fullmatch(NAME_PATTERN, value):
+        raise ModelError(f"{value!r} is no name: small letters, digits and _ only, a letter first", where=where)
+
+
+def _refuse_constant(text: str) -> Any:
+    raise ValueError(f"{text} is not allowed")

@@ -1,0 +1,42 @@
+"""Versions of the document format and the way up from old ones."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from shapewright.errors import ModelError
+
+FORMAT = "shapewright-procedural-model"
+VERSION = 1
+
+Upgrade = Callable[[dict[str, Any]], dict[str, Any]]
+
+UPGRADES: Mapping[int, Upgrade] = {}
+"""``UPGRADES[n]`` turns a document of version n into one of version n + 1. A new version adds one line here."""
+
+
+def upgrade_document(
+    document: Any, *, upgrades: Mapping[int, Upgrade] = UPGRADES, version: int = VERSION
+) -> dict[str, Any]:
+    """Return the document as the current version writes it; the argument stays as it is.
+
+    Args:
+        document: a parsed JSON document.
+        upgrades: the steps, by the version that they start from.
+        version: the version to arrive at.
+
+    Raises:
+        ModelError: not our format, no version, or one from the future.
+    """
+    if not isinstance(document, dict):
+        raise ModelError("a JSON object is needed", where="document")
+    if document.get("format") != FORMAT:
+        raise ModelError(f"this is no procedural model: its format must be {FORMAT!r}", where="format")
+    found = document.get("version")
+    if isinstance(found, bool) or not isinstance(found, int) or found < 1:
+        raise ModelError(f"{found!r} is no version", where="version")
+    if found > version:
+        raise ModelError(f"version {found} is newer than this program, which knows up to {version}", where="version")
+    current = dict(document)
+    for step in range(found, version):
+        current = {**upgrades[step](current), "version": step + 1}
+    return current
