@@ -7,7 +7,7 @@ Polygon soup is normal here: nothing asks for a closed, oriented or manifold mes
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal, Self, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -120,9 +120,9 @@ class TriangleMesh:
         rotation: Float[np.ndarray, "3 3"],
         translation: Float[np.ndarray, " 3"],
         scale: float = 1.0,
-    ) -> Self:
+    ) -> "TriangleMesh":
         """The mesh with every vertex ``v`` at ``scale * rotation @ v + translation``."""
-        return type(self)(scale * (self.vertices @ rotation.T) + translation, self.faces)
+        return TriangleMesh(scale * (self.vertices @ rotation.T) + translation, self.faces)
 
     def normalized(self) -> "Normalization":
         """Vertex mean to the origin, all coordinates within [-1, 1], one of them at the end (section 3.3).
@@ -137,7 +137,7 @@ class TriangleMesh:
         scale = 1.0 / extent
         return Normalization(TriangleMesh(centred * scale, self.faces), -scale * self.vertex_mean, scale)
 
-    def cleaned(self) -> Self:
+    def cleaned(self) -> "TriangleMesh":
         """The same surface without what carries none of it; the form in which files are handed out.
 
         - Vertices at exactly the same position become one (as in STL, where each triangle brings its own).
@@ -163,10 +163,10 @@ class TriangleMesh:
         if len(faces) == 0:
             raise MeshError("no face has an area", where="faces")
         used, renumbered = np.unique(faces, return_inverse=True)
-        return type(self)(self.vertices[used], renumbered.reshape(-1, 3))
+        return TriangleMesh(self.vertices[used], renumbered.reshape(-1, 3))
 
     @classmethod
-    def from_trimesh(cls, mesh: Any) -> Self:
+    def from_trimesh(cls, mesh: Any) -> "TriangleMesh":
         """Take vertices and faces of a ``trimesh.Trimesh`` as they are (copied)."""
         return cls(np.array(mesh.vertices, dtype=np.float64), np.array(mesh.faces, dtype=np.int64))
 
