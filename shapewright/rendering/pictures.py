@@ -1,0 +1,122 @@
+"""Pictures for people: one mesh, well framed and lit, and a query beside the mesh that was fitted to it."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Float, UInt8
+
+from shapewright.errors import RenderingError
+from shapewright.mesh import TriangleMesh
+from shapewright.rendering.context import shared_context
+from shapewright.rendering.images import STYLES, ImageStyle
+from shapewright.rendering.renderer import WINDOW, Scene, Style, indirect_commands, renderer_for
+from shapewright.rendering.smoothing import corner_normals
+from shapewright.rendering.views import three_quarter_view
+
+FILL = 0.90
+"""Share of the picture's side that the object takes."""
+QUERY_TINT, FITTED_TINT = 2, 3
+"""Colour numbers of the query (blue) and of the fitted mesh (orange)."""
+
+
+def render_mesh(
+    mesh: TriangleMesh,
+    *,
+    rotation: Float[np.ndarray, "3 3"] | None = None,
+    size: int = 512,
+    style: ImageStyle = "shaded",
+    color: tuple[float, float, float] | None = None,
+) -> UInt8[np.ndarray, "H W 3"]:
+    """Draw one mesh to be looked at: it fills the picture, curved surfaces are smooth.
+
+    Args:
+        rotation: turns the mesh before it is drawn; by default :func:`three_quarter_view`, y upwards.
+        size: pixels a side.
+        style: ``shaded`` or ``edges``, see :data:`shapewright.rendering.ImageStyle`.
+        color: red, green, blue in 0..1 for ``shaded``.
+
+    Raises:
+        RenderingError: no headless OpenGL, a picture too large.
+    """
+    turned = three_quarter_view() if rotation is None else rotation
+    look = STYLES[style] if color is None else replace(STYLES[style], colors=(color,) * 3)
+    picture: UInt8[np.ndarray, "H W 3"] = _draw([mesh], [1], [[0]], turned, size, look)[0]
+    return picture
+
+
+def compose_side_by_side(
+    query: TriangleMesh,
+    fitted: TriangleMesh,
+    *,
+    rotation: Float[np.ndarray, "3 3"] | None = None,
+    size: int = 512,
+) -> UInt8[np.ndarray, "H W 3"]:
+    """Three pictures in a row under one framing: query (blue), fitted mesh (orange), both laid over another.
+
+    In the overlay both are half transparent: where they agree the colours mix to grey, what only the query has
+    is light blue, what only the fitted mesh has is light orange.
+
+    Args:
+        query: the unknown mesh.
+        fitted: the generated mesh in the query's coordinates.
+        rotation: turns both; by default :func:`three_quarter_view`, y upwards.
+        size: pixels of each picture's side.
+
+    Returns:
+        A picture (size, 3 * size, 3).
+
+    Raises:
+        RenderingError: no headless OpenGL, a picture too large.
+    """
+    turned = three_quarter_view() if rotation is None else rotation
+    look = STYLES["shaded"]
+    blue, orange = _draw([query, fitted], [QUERY_TINT, FITTED_TINT], [[0], [1]], turned, size, look)
+    overlay = ((blue.astype(np.uint16) + orange + 1) // 2).astype(np.uint8)
+    return np.concatenate([blue, orange, overlay], axis=1)
+
+
+def _draw(
+    meshes: Sequence[TriangleMesh],
+    tints: Sequence[int],
+    tiles: Sequence[Sequence[int]],
+    rotation: Float[np.ndarray, "3 3"],
+    size: int,
+    style: Style,
+) -> UInt8[np.ndarray, "N H W 3"]:
+    """Draw tile after tile the meshes it lists, all under the framing that shows every mesh whole."""
+    if size < 1:
+        raise RenderingError("a picture has at least one pixel", where="size")
+    look = replace(style, oversampling=4)
+    every = np.concatenate([mesh.vertices[np.unique(mesh.faces)] for mesh in meshes])
+    turned = every @ rotation.T
+    low, high = turned.min(axis=0), turned.max(axis=0)
+    reach = float(max((high - low)[:2].max() / 2, (high - low)[2] / 6)) or 1.0
+    origin = rotation.T @ ((low + high) / 2)
+    corners = [mesh.triangles.reshape(-1, 3) for mesh in meshes]
+    sizes = [len(part) for part in corners]
+    starts = np.concatenate([[0], np.cumsum(sizes)[:-1]]).astype(np.int64)
+    shown = np.array([mesh for tile in tiles for mesh in tile], dtype=np.int64)
+    placements = np.zeros((len(shown), 3, 4))
+    placements[:, :, :3] = rotation
+    scene = Scene(
+        positions=((np.concatenate(corners) - origin) * (FILL * WINDOW / reach)).astype(np.float32),
+        triangles=np.concatenate([np.arange(count) for count in sizes]).reshape(-1, 3),
+        commands=indirect_commands(shown, starts, sizes, starts),
+        placements=placements,
+        tiles=np.array([number for number, tile in enumerate(tiles) for _ in tile], dtype=np.int64),
+        tints=np.array([tints[mesh] for mesh in shown], dtype=np.int64),
+        tile_count=len(tiles),
+        normals=np.concatenate([corner_normals(mesh).reshape(-1, 3) for mesh in meshes]),
+    )
+    out = np.empty((len(tiles), size, size, 3), dtype=np.uint8)
+    with shared_context() as context:
+        renderer = renderer_for(context)
+        try:
+            fits = renderer.tiles_a_batch(size, look)
+        except ValueError as error:
+            raise RenderingError(str(error), where="size") from error
+        if len(tiles) > fits:
+            raise RenderingError(f"{len(tiles)} pictures of {size} pixels do not fit the atlas", where="size")
+        renderer.draw(scene, out, look)
+    return out

@@ -1,0 +1,250 @@
+"""Draws lists of objects into a column of tiles and reads all pictures back at once. Knows OpenGL, not meshes."""
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from importlib import resources
+from typing import Any
+
+import moderngl
+import numpy as np
+from jaxtyping import Float, Float32, Int, UInt8
+
+SAMPLE_BYTES = 12
+"""Half floats of the surface (8) and depth (4) that one sample of the atlas takes."""
+MAX_ATLAS_BYTES = 96 * 2**20
+"""Bound of the atlas' memory; larger batches are drawn piece by piece."""
+WINDOW = 2.0
+"""Half the side of a picture, in units of the scaled object (whose coordinates lie within ±1 at scale 1)."""
+STEP_HEIGHT = 0.05
+"""A jump in depth of this size, in the same units, is drawn as an edge."""
+
+
+@dataclass(frozen=True)
+class Style:
+    """How the surface becomes a picture.
+
+    Args:
+        shader: name of the fragment shader without its ending.
+        oversampling: samples along each side of a pixel; even.
+        line_strength: darkness of lines, for shaders that let one choose.
+        background: red, green, blue in 0..1, for the same shaders.
+        colors: of colour numbers 1 to 3.
+    """
+
+    shader: str
+    oversampling: int = 2
+    line_strength: float = 0.0
+    background: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    colors: tuple[tuple[float, float, float], ...] = ((0.6, 0.6, 0.6),) * 3
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """One batch: objects side by side in shared arrays, and which of them each picture shows.
+
+    Args:
+        positions: vertices of all objects, normalised.
+        triangles: corners of all objects, counted from each object's first vertex.
+        commands: one row a draw: corners, pictures, first corner, first vertex, first picture (OpenGL's
+            ``DrawElementsIndirectCommand``).
+        placements: one row a drawn object: rows of (scale * rotation | translation).
+        tiles: tile of each placement; several objects may share a tile.
+        tints: colour number of each placement, from 1.
+        tile_count: pictures in this batch.
+        normals: of each vertex where smooth shading is wanted.
+    """
+
+    positions: Float32[np.ndarray, "V 3"]
+    triangles: Int[np.ndarray, "F 3"]
+    commands: Int[np.ndarray, "D 5"]
+    placements: Float[np.ndarray, "N 3 4"]
+    tiles: Int[np.ndarray, " N"]
+    tints: Int[np.ndarray, " N"]
+    tile_count: int
+    normals: Float32[np.ndarray, "V 3"] | None = None
+
+
+@dataclass
+class _Target:
+    """Textures of an atlas; kept from batch to batch."""
+
+    surface: Any
+    depth: Any
+    picture: Any
+    surface_frame: Any
+    picture_frame: Any
+    tiles: int
+
+    def release(self) -> None:
+        for part in (self.surface_frame, self.picture_frame, self.surface, self.depth, self.picture):
+            part.release()
+
+
+@dataclass
+class Renderer:
+    """Programs and targets that live as long as their context. Use only while the context is current."""
+
+    context: Any
+    _programs: dict[tuple[str, ...], Any] = field(default_factory=dict)
+    _target_key: tuple[int, int] | None = None
+    _target: _Target | None = None
+
+    def tiles_a_batch(self, size: int, style: Style) -> int:
+        """How many pictures fit one atlas, by the driver's texture limit and :data:`MAX_ATLAS_BYTES`.
+
+        Raises:
+            ValueError: not even one picture of this size fits.
+        """
+        side = size * style.oversampling
+        limit = int(self.context.info["GL_MAX_TEXTURE_SIZE"])
+        if side > limit:
+            raise ValueError(f"a picture of {size} pixels needs {side} samples a side, the driver allows {limit}")
+        return max(1, min(limit // side, MAX_ATLAS_BYTES // (side * side * SAMPLE_BYTES)))
+
+    def draw(self, scene: Scene, out: UInt8[np.ndarray, "N H W 3"], style: Style, *, window: float = WINDOW) -> None:
+        """Draw one batch and read it back into ``out``, whose rows run from top to bottom."""
+        size = out.shape[1]
+        side = size * style.oversampling
+        target = self._target_for(size, style.oversampling, scene.tile_count)
+        self._draw_surface(scene, target, side, window)
+        program = self._program("picture.vert", "edges_common", f"{style.shader}.frag")
+        spacing = 2.0 * window / (2 * size)
+        self._set(
+            program,
+            surface=0,
+            picture_size=size,
+            oversampling=style.oversampling,
+            sample_spacing=spacing,
+            step_height=STEP_HEIGHT,
+            line_strength=style.line_strength,
+            background=style.background,
+            colors=style.colors,
+        )
+        viewport = (0, 0, size, size * scene.tile_count)
+        target.picture_frame.use()
+        target.picture_frame.viewport = viewport
+        self.context.disable(moderngl.DEPTH_TEST)
+        target.surface.use(0)
+        with ExitStack() as stack:
+            triangle = self.context.vertex_array(program, [])
+            stack.callback(triangle.release)
+            triangle.render(moderngl.TRIANGLES, vertices=3)
+        target.picture_frame.read_into(out, viewport=viewport, components=3, alignment=1)
+
+    def _draw_surface(self, scene: Scene, target: _Target, side: int, window: float) -> None:
+        smooth = ("SMOOTH",) if scene.normals is not None else ()
+        program = self._program("geometry.vert", "geometry.frag", *smooth)
+        self._set(
+            program,
+            window=window,
+            tile_count=float(scene.tile_count),
+            samples_per_unit=side / (2.0 * window),
+        )
+        target.surface_frame.use()
+        target.surface_frame.viewport = viewport = (0, 0, side, side * scene.tile_count)
+        target.surface_frame.clear(0.0, 0.0, 0.0, 0.0, depth=1.0, viewport=viewport)
+        self.context.enable_only(moderngl.DEPTH_TEST)
+        self.context.enable_direct(0x3000)  # GL_CLIP_DISTANCE0
+        self.context.enable_direct(0x3001)
+        per_picture = np.empty((len(scene.placements), 14), dtype=np.float32)
+        per_picture[:, :12] = scene.placements.reshape(-1, 12)
+        per_picture[:, 12] = scene.tiles
+        per_picture[:, 13] = scene.tints
+        with ExitStack() as stack:
+
+            def buffer(array: np.ndarray) -> Any:
+                made = self.context.buffer(np.ascontiguousarray(array))
+                stack.callback(made.release)
+                return made
+
+            content = [
+                (buffer(scene.positions), "3f", "in_position"),
+                (buffer(per_picture), "4f 4f 4f 2f/i", "in_row_x", "in_row_y", "in_row_z", "in_tile_tint"),
+            ]
+            if scene.normals is not None:
+                content.append((buffer(scene.normals), "3f", "in_normal"))
+            corners = buffer(scene.triangles.astype(np.uint32))
+            vertex_array = self.context.vertex_array(program, content, index_buffer=corners)
+            stack.callback(vertex_array.release)
+            commands = buffer(scene.commands.astype(np.uint32))
+            vertex_array.render_indirect(commands, moderngl.TRIANGLES, count=len(scene.commands))
+        self.context.disable_direct(0x3000)
+        self.context.disable_direct(0x3001)
+
+    def _program(self, vertex: str, *rest: str) -> Any:
+        key = (vertex, *rest)
+        if key not in self._programs:
+            defines = "".join(f"#define {name}\n" for name in rest if name.isupper())
+            parts = [part for part in rest if not part.isupper()]
+            self._programs[key] = self.context.program(
+                vertex_shader=_with_defines(_shader(vertex), defines),
+                fragment_shader=_with_defines("".join(_shader(part) for part in parts), defines),
+            )
+        return self._programs[key]
+
+    @staticmethod
+    def _set(program: Any, **values: Any) -> None:
+        for name, value in values.items():
+            if name in program:
+                program[name].value = value
+
+    def _target_for(self, size: int, oversampling: int, tiles: int) -> _Target:
+        key = (size, oversampling)
+        if self._target is not None and (self._target_key != key or self._target.tiles < tiles):
+            self._target.release()
+            self._target = None
+        if self._target is None:
+            side = size * oversampling
+            surface = self.context.texture((side, side * tiles), 4, dtype="f2")
+            surface.filter = (moderngl.NEAREST, moderngl.NEAREST)
+            depth = self.context.depth_renderbuffer((side, side * tiles))
+            picture = self.context.renderbuffer((size, size * tiles), 3)
+            self._target = _Target(
+                surface=surface,
+                depth=depth,
+                picture=picture,
+                surface_frame=self.context.framebuffer([surface], depth),
+                picture_frame=self.context.framebuffer([picture]),
+                tiles=tiles,
+            )
+            self._target_key = key
+        return self._target
+
+
+def renderer_for(context: Any) -> Renderer:
+    """The renderer of a context, made when first asked for and kept with it."""
+    if context.extra is None:
+        context.extra = Renderer(context)
+    renderer: Renderer = context.extra
+    return renderer
+
+
+def indirect_commands(
+    objects: Int[np.ndarray, " N"],
+    first_corner: Sequence[int] | Int[np.ndarray, " M"],
+    corner_count: Sequence[int] | Int[np.ndarray, " M"],
+    first_vertex: Sequence[int] | Int[np.ndarray, " M"],
+) -> Int[np.ndarray, "D 5"]:
+    """Draws for a list of pictures: neighbours that show the same object share one draw."""
+    starts = np.flatnonzero(np.diff(objects, prepend=-1))
+    shown = objects[starts]
+    return np.stack(
+        [
+            np.asarray(corner_count)[shown],
+            np.diff(starts, append=len(objects)),
+            np.asarray(first_corner)[shown],
+            np.asarray(first_vertex)[shown],
+            starts,
+        ],
+        axis=1,
+    )
+
+
+def _shader(name: str) -> str:
+    return resources.files(__package__).joinpath("shaders", f"{name}.glsl").read_text(encoding="utf-8")
+
+
+def _with_defines(source: str, defines: str) -> str:
+    version, _, body = source.partition("\n")
+    return f"{version}\n{defines}{body}"

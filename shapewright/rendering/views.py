@@ -1,0 +1,63 @@
+"""Directions to look from: random ones to learn with, evenly spread ones, and one for people.
+
+A view is a rotation matrix that turns the object; the camera never moves. It looks along -z with y up.
+"""
+
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial.transform import Rotation
+
+SCALE_RANGE = (0.8, 2.0)
+"""Scales of the learning images (paper section 3.2)."""
+
+UpAxis = Literal["y", "z"]
+
+
+def random_views(
+    rng: np.random.Generator, count: int, *, scale_range: tuple[float, float] = SCALE_RANGE
+) -> tuple[Float[np.ndarray, "N 3 3"], Float[np.ndarray, " N"]]:
+    """Rotations drawn uniformly from all rotations, scales drawn uniformly from a range (paper section 3.2).
+
+    Returns:
+        Rotation matrices (N, 3, 3) and scales (N,).
+    """
+    rotations = Rotation.random(count, rng=rng).as_matrix().reshape(count, 3, 3)
+    return np.asarray(rotations, dtype=np.float64), rng.uniform(*scale_range, size=count)
+
+
+def even_views(count: int) -> Float[np.ndarray, "N 3 3"]:
+    """Rotations that look at an object from evenly spread directions, the object's y axis upwards.
+
+    The directions lie on a Fibonacci sphere, the same ones each time.
+    """
+    steps = np.arange(count) + 0.5
+    height = 1.0 - 2.0 * steps / max(count, 1)
+    azimuth_rad = np.pi * (1.0 + np.sqrt(5.0)) * steps
+    radius = np.sqrt(np.maximum(0.0, 1.0 - height * height))
+    directions = np.stack([radius * np.sin(azimuth_rad), height, radius * np.cos(azimuth_rad)], axis=1)
+    return np.stack([_look_from(direction) for direction in directions]) if count else np.zeros((0, 3, 3))
+
+
+def _look_from(direction: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
+    """Turn ``direction`` (a unit vector) towards the camera, y as far up as it goes."""
+    up = np.array([0.0, 1.0, 0.0]) if abs(direction[1]) < 0.999 else np.array([0.0, 0.0, -1.0])
+    right = np.cross(up, direction)
+    right /= np.linalg.norm(right)
+    return np.stack([right, np.cross(direction, right), direction])
+
+
+def three_quarter_view(
+    up: UpAxis = "y", *, azimuth_rad: float = np.deg2rad(35.0), elevation_rad: float = np.deg2rad(22.0)
+) -> Float[np.ndarray, "3 3"]:
+    """A view from the front, the side and a little above: what product pictures use.
+
+    Args:
+        up: the axis of the object that points upwards.
+        azimuth_rad: turn about the upright axis.
+        elevation_rad: height of the camera above the horizon.
+    """
+    around = Rotation.from_euler("y", -azimuth_rad) * Rotation.from_euler("x", 0.0)
+    upright = Rotation.from_euler("x", -np.pi / 2) if up == "z" else Rotation.identity()
+    return np.asarray((Rotation.from_euler("x", elevation_rad) * around * upright).as_matrix())
