@@ -1,0 +1,59 @@
+"""What the store knows: models, meshes, classifiers, classifications, estimations.
+
+Every function takes a session, so that several steps can share one transaction. Models and meshes are addressed
+by their content; the others are asked for together with the job that fills them in.
+"""
+
+from models_store.catalog.classifications import (
+    get_classification,
+    list_classifications,
+    record_classification,
+    request_classification,
+)
+from models_store.catalog.classifiers import (
+    get_classifier,
+    list_classifiers,
+    newest_classifier,
+    record_classifier,
+    request_classifier,
+)
+from models_store.catalog.estimations import (
+    get_estimation,
+    list_estimations,
+    record_estimation,
+    request_estimation,
+)
+from models_store.catalog.meshes import add_mesh, get_mesh, list_meshes, mesh_id, store_mesh
+from models_store.catalog.models import (
+    add_model,
+    get_model,
+    list_models,
+    record_thumbnail,
+    request_thumbnail,
+)
+
+__all__ = [
+    "add_mesh",
+    "add_model",
+    "get_classification",
+    "get_classifier",
+    "get_estimation",
+    "get_mesh",
+    "get_model",
+    "list_classifications",
+    "list_classifiers",
+    "list_estimations",
+    "list_meshes",
+    "list_models",
+    "mesh_id",
+    "newest_classifier",
+    "record_classification",
+    "record_classifier",
+    "record_estimation",
+    "record_thumbnail",
+    "request_classification",
+    "request_classifier",
+    "request_estimation",
+    "request_thumbnail",
+    "store_mesh",
+]

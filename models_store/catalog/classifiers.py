@@ -1,0 +1,102 @@
+"""Classifiers: asked for with a training job, complete once their ONNX file is there."""
+
+from collections.abc import Sequence
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from models_store.catalog.models import get_model
+from models_store.catalog.rows import get_row
+from models_store.errors import StoreError
+from models_store.jobs import JobKind, create_job, new_id
+from models_store.paging import Page, fetch_page
+from models_store.tables import ClassifierRow
+from models_store.text import storable
+
+
+def request_classifier(
+    session: Session,
+    model_ids: Sequence[str],
+    settings: dict[str, Any],
+    *,
+    name: str | None = None,
+    now: datetime,
+    max_attempts: int = 3,
+) -> ClassifierRow:
+    """Queue the training of a classifier on these models; the row's ``job`` is the job.
+
+    Args:
+        session: a writing session.
+        model_ids: the models; several may share a class. Repeated ids count once.
+        settings: fields of :class:`shapewright.classification.TrainingSettings` that differ from the default.
+        name: a name for people.
+        now: the time, with a zone.
+        max_attempts: of the job.
+
+    Raises:
+        NotFoundError: a model is not there.
+        StoreError: the models are of fewer than two classes, so there is nothing to tell apart.
+    """
+    unique_ids = list(dict.fromkeys(model_ids))
+    class_names = sorted({get_model(session, model_id).class_name for model_id in unique_ids})
+    if len(class_names) < 2:
+        raise StoreError("a classifier needs models of at least two classes", where="model_ids")
+    identifier = new_id()
+    payload = {"classifier_id": identifier}
+    job = create_job(session, JobKind.TRAIN_CLASSIFIER, identifier, payload, now=now, max_attempts=max_attempts)
+    row = ClassifierRow(
+        id=identifier,
+        job=job,
+        name=None if name is None else storable(name, limit=200),
+        model_ids=unique_ids,
+        class_names=class_names,
+        settings=settings,
+        created_at=now,
+    )
+    session.add(row)
+    session.flush()
+    return row
+
+
+def record_classifier(
+    session: Session,
+    identifier: str,
+    *,
+    onnx_key: str,
+    class_names: Sequence[str],
+    metrics: dict[str, Any],
+    seconds: float,
+) -> None:
+    """Write the outcome of a training; in the transaction that ends the job."""
+    row = get_classifier(session, identifier)
+    row.onnx_key = onnx_key
+    row.class_names = list(class_names)
+    row.metrics = metrics
+    row.seconds = seconds
+
+
+def get_classifier(session: Session, identifier: str) -> ClassifierRow:
+    """The classifier with this id, whatever its state.
+
+    Raises:
+        NotFoundError: there is none.
+    """
+    return get_row(session, ClassifierRow, "classifier", identifier)
+
+
+def newest_classifier(session: Session) -> ClassifierRow | None:
+    """The newest classifier whose training has succeeded."""
+    query = select(ClassifierRow).where(ClassifierRow.onnx_key.is_not(None))
+    order = (ClassifierRow.created_at.desc(), ClassifierRow.id.desc())
+    return session.scalars(query.order_by(*order).limit(1)).one_or_none()
+
+
+def list_classifiers(session: Session, *, limit: int = 50, cursor: str | None = None) -> Page[ClassifierRow]:
+    """One page of classifiers, newest first.
+
+    Raises:
+        CursorError: a cursor of somewhere else, or a limit out of range.
+    """
+    return fetch_page(session, select(ClassifierRow), ClassifierRow, limit=limit, cursor=cursor)

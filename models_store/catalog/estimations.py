@@ -1,0 +1,78 @@
+"""Estimations: a mesh, the model that shall rebuild it, and the parameter values found."""
+
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from models_store.catalog.meshes import get_mesh
+from models_store.catalog.models import get_model
+from models_store.catalog.rows import get_row
+from models_store.jobs import JobKind, create_job, new_id
+from models_store.paging import Page, fetch_page
+from models_store.tables import EstimationRow
+
+
+def request_estimation(
+    session: Session,
+    mesh_id: str,
+    model_id: str,
+    settings: dict[str, Any],
+    *,
+    now: datetime,
+    max_attempts: int = 3,
+) -> EstimationRow:
+    """Queue an estimation; the row's ``job`` is the job.
+
+    Args:
+        session: a writing session.
+        mesh_id: the query.
+        model_id: the procedural model that shall rebuild it.
+        settings: fields of :class:`shapewright.estimation.EstimationSettings` that differ from the default.
+        now: the time, with a zone.
+        max_attempts: of the job.
+
+    Raises:
+        NotFoundError: the mesh or the model is not there.
+    """
+    get_mesh(session, mesh_id)
+    get_model(session, model_id)
+    identifier = new_id()
+    payload = {"estimation_id": identifier}
+    row = EstimationRow(
+        id=identifier,
+        job=create_job(session, JobKind.ESTIMATE, identifier, payload, now=now, max_attempts=max_attempts),
+        mesh_id=mesh_id,
+        model_id=model_id,
+        settings=settings,
+        created_at=now,
+    )
+    session.add(row)
+    session.flush()
+    return row
+
+
+def record_estimation(session: Session, identifier: str, result: dict[str, Any], mesh_key: str | None) -> None:
+    """Write the parameter values; in the transaction that ends the job."""
+    row = get_estimation(session, identifier)
+    row.result = result
+    row.mesh_key = mesh_key
+
+
+def get_estimation(session: Session, identifier: str) -> EstimationRow:
+    """The estimation with this id.
+
+    Raises:
+        NotFoundError: there is none.
+    """
+    return get_row(session, EstimationRow, "estimation", identifier)
+
+
+def list_estimations(session: Session, *, limit: int = 50, cursor: str | None = None) -> Page[EstimationRow]:
+    """One page of estimations, newest first.
+
+    Raises:
+        CursorError: a cursor of somewhere else, or a limit out of range.
+    """
+    return fetch_page(session, select(EstimationRow), EstimationRow, limit=limit, cursor=cursor)

@@ -1,0 +1,195 @@
+"""Jobs as workers see them: claim one, keep it, report, and end it.
+
+A claim carries the fencing token that its conditional update handed out. Every later write asks for this token
+in its ``WHERE``: a worker that was believed dead, or a second delivery of the same message, changes nothing and
+hears :class:`~models_store.errors.StaleClaim`.
+"""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any
+
+from sqlalchemy import ColumnElement, case, func, literal
+from sqlalchemy.orm import Session
+
+from models_store.errors import NotFoundError, StaleClaim
+from models_store.job_events import add_event, add_state_event, update_job
+from models_store.job_kinds import JobKind, JobState
+from models_store.tables import JobRow
+from models_store.text import check_id, storable
+
+
+@dataclass(frozen=True)
+class Claim:
+    """The right to work on a job, as long as the token is the newest."""
+
+    job_id: str
+    kind: JobKind
+    token: int
+    attempt: int
+    max_attempts: int
+    result_id: str
+    payload: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class JobError:
+    """Why a job failed, in words for the one who asked for it."""
+
+    title: str
+    detail: str
+    where: str | None = None
+
+
+def claim(session: Session, job_id: str, *, now: datetime, lease: timedelta, worker: str = "") -> Claim | None:
+    """Take a queued job; of any number of workers that try, one gets it.
+
+    Returns ``None`` if it is not queued (taken, ended, or not there): a delivery without a job is harmless.
+    """
+    try:
+        check_id("job", job_id)
+    except NotFoundError:
+        return None
+    job = update_job(
+        session,
+        [JobRow.id == job_id, JobRow.state == JobState.QUEUED],
+        {
+            "state": JobState.RUNNING,
+            "token": JobRow.token + 1,
+            "attempt": JobRow.attempt + 1,
+            "lease_expires_at": now + lease,
+            "started_at": func.coalesce(JobRow.started_at, literal(now, JobRow.started_at.type)),
+            "next_wakeup_at": None,
+            "worker": worker,
+        },
+    )
+    if job is None:
+        return None
+    add_state_event(session, job, now)
+    return Claim(
+        job_id=job.id,
+        kind=job.kind,
+        token=job.token,
+        attempt=job.attempt,
+        max_attempts=job.max_attempts,
+        result_id=job.result_id,
+        payload=dict(job.payload),
+    )
+
+
+def renew(session: Session, held: Claim, *, now: datetime, lease: timedelta) -> bool:
+    """Keep the job for another ``lease``. Returns whether somebody has asked for it to be cancelled.
+
+    Raises:
+        StaleClaim: the job is no longer ours.
+    """
+    return _write(session, held, {"lease_expires_at": now + lease}, event=False).cancel_requested
+
+
+def report_progress(
+    session: Session, held: Claim, fraction: float, message: str, *, now: datetime, lease: timedelta
+) -> bool:
+    """Write progress, which also renews the lease. Returns whether cancellation was asked for.
+
+    Raises:
+        StaleClaim: the job is no longer ours.
+    """
+    fraction = min(max(fraction, 0.0), 1.0)
+    message = storable(message, limit=500)
+    values = {
+        "lease_expires_at": now + lease,
+        "progress_fraction": fraction,
+        "progress_message": message,
+    }
+    job = _write(session, held, values)
+    add_event(session, job, "progress", {"fraction": fraction, "message": message}, now)
+    return job.cancel_requested
+
+
+def finish(session: Session, held: Claim, *, now: datetime) -> None:
+    """End the job well. Write its results in the same transaction, after this call.
+
+    Raises:
+        StaleClaim: the job is no longer ours; nothing of the transaction may be kept.
+    """
+    values = {"state": JobState.SUCCEEDED, "progress_fraction": 1.0, **_ended(now)}
+    add_state_event(session, _write(session, held, values), now)
+
+
+def finish_cancelled(session: Session, held: Claim, *, now: datetime) -> None:
+    """End the job because somebody asked for it; a best result so far may be written beside it.
+
+    Raises:
+        StaleClaim: the job is no longer ours.
+    """
+    add_state_event(session, _write(session, held, {"state": JobState.CANCELLED, **_ended(now)}), now)
+
+
+def fail(session: Session, held: Claim, error: JobError, *, now: datetime) -> None:
+    """End the job badly; the error is for the one who asked for the job.
+
+    Raises:
+        StaleClaim: the job is no longer ours.
+    """
+    values = {"state": JobState.FAILED, **error_values(error), **_ended(now)}
+    add_state_event(session, _write(session, held, values), now)
+
+
+def release(
+    session: Session, held: Claim, *, now: datetime, delay: timedelta = timedelta(0), counted: bool = False
+) -> None:
+    """Give the job back to the queue, e.g. because this worker is about to stop.
+
+    Args:
+        session: a writing session.
+        held: the claim that ends with this.
+        now: the time, with a zone.
+        delay: how long the sweeper waits before it announces the job again.
+        counted: whether this was an attempt (a crash) or none (a planned stop).
+
+    A job that was asked to stop meanwhile is cancelled instead.
+
+    Raises:
+        StaleClaim: the job is no longer ours.
+    """
+    values = {**back_to_queue(now + delay, now), "attempt": JobRow.attempt - (0 if counted else 1)}
+    add_state_event(session, _write(session, held, values), now)
+
+
+def error_values(error: JobError) -> dict[str, Any]:
+    """The columns of a failure."""
+    return {
+        "error_title": storable(error.title, limit=200),
+        "error_detail": storable(error.detail, limit=4000),
+        "error_where": None if error.where is None else storable(error.where, limit=500),
+    }
+
+
+def back_to_queue(wakeup_at: datetime, now: datetime) -> dict[str, Any]:
+    """The columns of a running job that goes back to the queue, or ends if it was asked to."""
+    cancelled, state, time = JobRow.cancel_requested, JobRow.state.type, JobRow.finished_at.type
+    return {
+        "state": case((cancelled, literal(JobState.CANCELLED, state)), else_=literal(JobState.QUEUED, state)),
+        "finished_at": case((cancelled, literal(now, time)), else_=None),
+        "next_wakeup_at": case((cancelled, None), else_=literal(wakeup_at, time)),
+        "wakeup_count": 0,
+        "lease_expires_at": None,
+        "worker": None,
+        "progress_fraction": 0.0,
+        "progress_message": "",
+    }
+
+
+def _ended(now: datetime) -> dict[str, Any]:
+    return {"finished_at": now, "lease_expires_at": None, "next_wakeup_at": None}
+
+
+def _held(held: Claim) -> list[ColumnElement[bool]]:
+    return [JobRow.id == held.job_id, JobRow.token == held.token, JobRow.state == JobState.RUNNING]
+
+
+def _write(session: Session, held: Claim, values: dict[str, Any], *, event: bool = True) -> JobRow:
+    job = update_job(session, _held(held), values, event=event)
+    if job is None:
+        raise StaleClaim(f"claim {held.token} on job {held.job_id} is no longer the current one")
+    return job

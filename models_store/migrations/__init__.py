@@ -1,0 +1,1 @@
+"""Revisions of the database; :func:`models_store.session.upgrade` applies them."""

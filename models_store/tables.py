@@ -1,0 +1,211 @@
+"""The tables. A row is the truth; broker messages and artefacts only point to it or hang on it."""
+
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import (
+    JSON,
+    BigInteger,
+    DateTime,
+    Dialect,
+    Enum,
+    ForeignKey,
+    Index,
+    MetaData,
+    String,
+    Text,
+    TypeDecorator,
+)
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship
+
+from models_store.job_kinds import JobKind, JobState
+
+
+class UtcDateTime(TypeDecorator[datetime]):
+    """An aware time in UTC, in databases with time zones and without."""
+
+    impl = DateTime(timezone=True)
+    cache_ok = True
+
+    def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:
+        """Refuse naive times and convert to UTC."""
+        if value is None:
+            return None
+        if value.tzinfo is None:
+            raise ValueError("a time without a zone cannot be stored")
+        return value.astimezone(UTC)
+
+    def process_result_value(self, value: datetime | None, dialect: Dialect) -> datetime | None:
+        """Give SQLite's naive times back their zone."""
+        if value is None:
+            return None
+        return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
+
+
+def _words(enum: type[JobKind] | type[JobState]) -> Enum:
+    """Store the word itself, so that a new kind or state needs no change of a database type."""
+    return Enum(
+        enum, native_enum=False, create_constraint=False, length=32, values_callable=lambda e: [m.value for m in e]
+    )
+
+
+class Base(DeclarativeBase):
+    """Base of all tables; constraint names are fixed so that migrations can name them."""
+
+    metadata = MetaData(
+        naming_convention={
+            "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+            "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+            "ck": "ck_%(table_name)s_%(constraint_name)s",
+            "fk": "fk_%(table_name)s_%(column_0_N_name)s_%(referred_table_name)s",
+            "pk": "pk_%(table_name)s",
+        }
+    )
+    type_annotation_map = {  # noqa: RUF012 - read by SQLAlchemy at class creation
+        datetime: UtcDateTime,
+        dict[str, Any]: JSON(none_as_null=True),
+        list[Any]: JSON(none_as_null=True),
+        list[str]: JSON(none_as_null=True),
+        JobKind: _words(JobKind),
+        JobState: _words(JobState),
+    }
+
+
+class JobRow(Base):
+    """A piece of long work.
+
+    ``token`` is the fencing token: it grows with every claim, and a write that carries an older one is refused.
+    ``event_count`` numbers the events of the job without gaps.
+    """
+
+    __tablename__ = "jobs"
+    __table_args__ = (
+        Index(None, "created_at", "id"),
+        Index(None, "state", "lease_expires_at"),
+        Index(None, "state", "next_wakeup_at"),
+    )
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    kind: Mapped[JobKind]
+    state: Mapped[JobState]
+    payload: Mapped[dict[str, Any]]
+    result_id: Mapped[str] = mapped_column(String(64))
+    attempt: Mapped[int]
+    max_attempts: Mapped[int]
+    token: Mapped[int] = mapped_column(BigInteger)
+    event_count: Mapped[int] = mapped_column(BigInteger)
+    cancel_requested: Mapped[bool]
+    progress_fraction: Mapped[float]
+    progress_message: Mapped[str] = mapped_column(Text)
+    error_title: Mapped[str | None] = mapped_column(Text)
+    error_detail: Mapped[str | None] = mapped_column(Text)
+    error_where: Mapped[str | None] = mapped_column(Text)
+    worker: Mapped[str | None] = mapped_column(Text)
+    created_at: Mapped[datetime]
+    started_at: Mapped[datetime | None]
+    finished_at: Mapped[datetime | None]
+    lease_expires_at: Mapped[datetime | None]
+    next_wakeup_at: Mapped[datetime | None]
+    wakeup_count: Mapped[int]
+
+
+class JobEventRow(Base):
+    """One entry of a job's replayable stream: ``type`` is ``state`` or ``progress``."""
+
+    __tablename__ = "job_events"
+
+    job_id: Mapped[str] = mapped_column(ForeignKey(JobRow.id, ondelete="CASCADE"), primary_key=True)
+    sequence: Mapped[int] = mapped_column(BigInteger, primary_key=True, autoincrement=False)
+    type: Mapped[str] = mapped_column(String(16))
+    data: Mapped[dict[str, Any]]
+    created_at: Mapped[datetime]
+
+
+class ModelRow(Base):
+    """A procedural model; its id is the SHA-256 of its canonical document."""
+
+    __tablename__ = "models"
+    __table_args__ = (Index(None, "created_at", "id"),)
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    name: Mapped[str] = mapped_column(Text)
+    class_name: Mapped[str] = mapped_column(Text)
+    description: Mapped[str] = mapped_column(Text)
+    closed: Mapped[bool]
+    format_version: Mapped[int]
+    operation_count: Mapped[int]
+    parameters: Mapped[list[Any]]
+    document: Mapped[str] = mapped_column(Text)
+    thumbnail_key: Mapped[str | None] = mapped_column(Text)
+    created_at: Mapped[datetime]
+
+
+class MeshRow(Base):
+    """An uploaded mesh; its id is the SHA-256 of the uploaded bytes."""
+
+    __tablename__ = "meshes"
+    __table_args__ = (Index(None, "created_at", "id"),)
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    file_name: Mapped[str] = mapped_column(Text)
+    file_type: Mapped[str] = mapped_column(String(8))
+    file_size: Mapped[int] = mapped_column(BigInteger)
+    vertex_count: Mapped[int]
+    face_count: Mapped[int]
+    bounds: Mapped[list[Any]]
+    watertight: Mapped[bool]
+    source_key: Mapped[str] = mapped_column(Text)
+    content_key: Mapped[str] = mapped_column(Text)
+    created_at: Mapped[datetime]
+
+
+class ClassifierRow(Base):
+    """A classifier: asked for with its job, complete once ``onnx_key`` is set."""
+
+    __tablename__ = "classifiers"
+    __table_args__ = (Index(None, "created_at", "id"),)
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    job_id: Mapped[str] = mapped_column(ForeignKey(JobRow.id), unique=True)
+    name: Mapped[str | None] = mapped_column(Text)
+    model_ids: Mapped[list[str]]
+    class_names: Mapped[list[str]]
+    settings: Mapped[dict[str, Any]]
+    metrics: Mapped[dict[str, Any] | None]
+    onnx_key: Mapped[str | None] = mapped_column(Text)
+    seconds: Mapped[float | None]
+    created_at: Mapped[datetime]
+    job: Mapped[JobRow] = relationship(lazy="joined", innerjoin=True)
+
+
+class ClassificationRow(Base):
+    """What a mesh was taken for; ``result`` is set once."""
+
+    __tablename__ = "classifications"
+    __table_args__ = (Index(None, "created_at", "id"),)
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    job_id: Mapped[str] = mapped_column(ForeignKey(JobRow.id), unique=True)
+    mesh_id: Mapped[str] = mapped_column(ForeignKey(MeshRow.id), index=True)
+    classifier_id: Mapped[str] = mapped_column(ForeignKey(ClassifierRow.id), index=True)
+    settings: Mapped[dict[str, Any]]
+    result: Mapped[dict[str, Any] | None]
+    created_at: Mapped[datetime]
+    job: Mapped[JobRow] = relationship(lazy="joined", innerjoin=True)
+
+
+class EstimationRow(Base):
+    """Which parameter values rebuild a mesh; ``result`` and ``mesh_key`` are set once."""
+
+    __tablename__ = "estimations"
+    __table_args__ = (Index(None, "created_at", "id"),)
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    job_id: Mapped[str] = mapped_column(ForeignKey(JobRow.id), unique=True)
+    mesh_id: Mapped[str] = mapped_column(ForeignKey(MeshRow.id), index=True)
+    model_id: Mapped[str] = mapped_column(ForeignKey(ModelRow.id), index=True)
+    settings: Mapped[dict[str, Any]]
+    result: Mapped[dict[str, Any] | None]
+    mesh_key: Mapped[str | None] = mapped_column(Text)
+    created_at: Mapped[datetime]
+    job: Mapped[JobRow] = relationship(lazy="joined", innerjoin=True)
