@@ -1,0 +1,5 @@
+"""`python -m cli` is the `shapewright` command."""
+
+from cli.app import main
+
+main()

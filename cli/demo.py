@@ -1,0 +1,211 @@
+"""`shapewright demo`: the whole path on one mesh, all of it through the REST service."""
+
+import contextlib
+import signal
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from cli.console import AsJson, print_json, shown_progress, stderr, stdout
+from cli.report import parameter_table, probability_table
+from cli.sources import library_files
+from shapewright.errors import ShapewrightError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from cli.client import Client
+
+SAMPLE = Path(__file__).resolve().parent.parent / "examples" / "goblet.ply"
+READY_WITHIN_S = 60.0
+
+
+def demo(
+    mesh: Annotated[
+        Path | None, typer.Argument(help="Mesh file (default: examples/goblet.ply).", show_default=False)
+    ] = None,
+    once: Annotated[bool, typer.Option("--once", help="End when all is done; do not keep serving.")] = False,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of the service; 0 takes a free one.")] = 0,
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.")] = Path("demo-output"),
+    data_dir: Annotated[
+        Path | None,
+        typer.Option(
+            help="Keep the service's folder here; a classifier that an earlier demo trained there with the same "
+            "settings is used again (default: a temporary folder, trained anew).",
+            show_default=False,
+        ),
+    ] = None,
+    variations: Annotated[int, typer.Option(min=1, help="Random variations of each class to learn from.")] = 60,
+    images: Annotated[int, typer.Option(min=1, help="Images of each variation.")] = 5,
+    samples: Annotated[int, typer.Option(min=1, help="Random instances of the estimation's first layer.")] = 1500,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all random choices.")] = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Show the whole path on one mesh: train, classify, estimate, and look at it in the dashboard.
+
+    Starts the service and a worker, uploads the procedural models that ship, trains a classifier with pictures of
+    their random variations, uploads MESH, asks what it is and which parameters rebuild it. Everything goes through
+    the REST service, as it would from another machine. Exit status 0 only if every step succeeded.
+
+    Examples:
+
+      [bold]bash scripts/demo[/]                       the sample, then the dashboard until Ctrl-C
+      [bold]bash scripts/demo my-table.off --once[/]   a mesh of yours
+    """
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    console = stderr() if as_json else stdout()
+    query = SAMPLE if mesh is None else mesh
+    settings = {"variations": variations, "images_per_variation": images, "seed": seed}
+    finished = False
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+        with contextlib.ExitStack() as stack:
+            folder = data_dir or stack.enter_context(_temporary_folder())
+            _step(console, 1, "start the service and a worker (SQLite, a folder, no other server)")
+            from cli.client import connected
+            from cli.local_service import local_service
+
+            service = stack.enter_context(local_service(folder, port=port, log=output / "service.log"))
+            client = stack.enter_context(connected(service["url"], ready_within_s=READY_WITHIN_S))
+            console.print(f"   {service['url']}, worker {service['worker_pid']}, log {output / 'service.log'}")
+            report = _walk(client, console, query, output, settings, {"samples": samples, "seed": seed})
+            report["dashboard_url"] = service["dashboard_url"]
+            finished = True
+            if as_json:
+                print_json(report)
+            console.print(f"\nDashboard: [bold]{service['dashboard_url']}[/]")
+            if not once:
+                console.print("Ctrl-C ends the demo.")
+                while True:
+                    time.sleep(3600)
+    except KeyboardInterrupt:
+        if not finished:
+            raise typer.Exit(130) from None
+    except (ShapewrightError, OSError) as error:
+        stderr().print(f"shapewright: the demo stopped: {error}", markup=False)
+        raise typer.Exit(1) from None
+
+
+@contextlib.contextmanager
+def _temporary_folder() -> Iterator[Path]:
+    with tempfile.TemporaryDirectory(prefix="shapewright-demo-", ignore_cleanup_errors=True) as folder:
+        yield Path(folder)
+
+
+def _step(console: "Console", number: int, text: str) -> None:
+    console.print(f"[bold cyan]{number}[/] [bold]{text}[/]")
+
+
+def _walk(
+    client: "Client",
+    console: "Console",
+    query: Path,
+    output: Path,
+    training: dict[str, int],
+    estimating: dict[str, int],
+) -> dict[str, Any]:
+    """Take the steps 2 to 5; return what they found."""
+    _step(console, 2, "upload the procedural models")
+    models = _upload_models(client, console)
+
+    _step(console, 3, "train a classifier with pictures of their variations")
+    classifier = _train(client, console, [model["id"] for model in models], training)
+
+    _step(console, 4, f"upload {query}, classify it and estimate its parameters")
+    uploaded = client.upload("/v1/meshes", query)
+    console.print(
+        f"   {uploaded['vertex_count']} vertices, {uploaded['face_count']} triangles, "
+        f"{'closed' if uploaded['watertight'] else 'not closed'}"
+    )
+    classification = _run(
+        client, "classifying", "/v1/classifications", {"mesh_id": uploaded["id"], "classifier_id": classifier["id"]}
+    )
+    found = classification["result"]
+    console.print(f"   it is a [bold]{found['class_name']}[/] ({found['seconds']:.1f} s)")
+    model = next(model for model in models if model["class_name"] == found["class_name"])
+    estimation = _run(
+        client,
+        "estimating",
+        "/v1/estimations",
+        {"mesh_id": uploaded["id"], "model_id": model["id"], "settings": estimating},
+    )
+    fit = estimation["result"]
+    console.print(f"   fitted with the model {model['name']} ({fit['seconds']:.1f} s)")
+
+    _step(console, 5, "what was found")
+    console.print(probability_table(found["probabilities"]))
+    console.print(parameter_table(fit["parameters"]))
+    distances = fit["distances"]
+    console.print(
+        f"   layer {fit['layer']} · panorama {distances['panorama']:.4g} · surface {distances['surface']:.4g} "
+        f"· z-buffer {distances['zbuffer']:.4g} · {fit['seconds']:.1f} s"
+    )
+    picture, glb = _write_files(client, uploaded["id"], estimation, output, query.stem)
+    console.print(f"   {picture}\n   {glb}")
+    return {
+        "query": str(query),
+        "class_name": found["class_name"],
+        "probabilities": found["probabilities"],
+        "classifier_metrics": classifier["metrics"],
+        "model": model["name"],
+        "layer": fit["layer"],
+        "parameters": fit["parameters"],
+        "distances": distances,
+        "seconds": {"classification": found["seconds"], "estimation": fit["seconds"]},
+        "picture_file": str(picture),
+        "mesh_file": str(glb),
+    }
+
+
+def _upload_models(client: "Client", console: "Console") -> list[Any]:
+    models = []
+    for path in library_files().values():
+        model, new = client.post_document("/v1/models", path.read_text(encoding="utf-8"))
+        models.append(model)
+        state = "uploaded" if new else "already there"
+        console.print(f"   {model['name']}: {len(model['parameters'])} parameters, {state}")
+    return models
+
+
+def _train(client: "Client", console: "Console", model_ids: list[str], settings: dict[str, int]) -> Any:
+    for classifier in client.list_items("/v1/classifiers"):
+        same = all(classifier["settings"].get(name) == value for name, value in settings.items())
+        if classifier["state"] == "succeeded" and same and set(classifier["model_ids"]) == set(model_ids):
+            console.print("   the classifier of an earlier demo in this folder is used again")
+            return classifier
+    started_s = time.monotonic()
+    body = {"name": "demo", "model_ids": model_ids, "settings": settings}
+    classifier = _run(client, "training", "/v1/classifiers", body)
+    count = settings["variations"] * settings["images_per_variation"]
+    seconds = time.monotonic() - started_s
+    console.print(f"   {len(classifier['class_names'])} classes, {count} images each ({seconds:.1f} s)")
+    return classifier
+
+
+def _run(client: "Client", title: str, path: str, body: dict[str, Any]) -> Any:
+    """Start long work, follow its job, return its result."""
+    accepted = client.post(path, body)
+    with shown_progress(f"   {title}") as progress:
+        client.follow(accepted["job"], progress)
+    return client.get(accepted["url"])
+
+
+def _write_files(client: "Client", mesh_id: str, estimation: Any, output: Path, name: str) -> tuple[Path, Path]:
+    """Fetch query and fitted mesh from the service, write the fitted one and the picture of both."""
+    import numpy as np
+
+    from cli.picture import save_side_by_side
+    from shapewright.mesh_file import load_mesh
+
+    glb, picture = output / f"{name}-fitted.glb", output / f"{name}.png"
+    glb.write_bytes(client.get_bytes(f"/v1/estimations/{estimation['id']}/mesh"))
+    with tempfile.TemporaryDirectory() as folder:
+        query = Path(folder) / "query.glb"
+        query.write_bytes(client.get_bytes(f"/v1/meshes/{mesh_id}/content"))
+        rotation = np.array(estimation["result"]["pose"]["rotation"])
+        save_side_by_side(load_mesh(query), load_mesh(glb), picture, model_to_query=rotation)
+    return picture, glb

@@ -1,0 +1,106 @@
+"""`shapewright estimate`: which parameter values rebuild this mesh?"""
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from cli.console import AsJson, print_json, shown_progress, stdout
+from cli.report import parameter_table
+from cli.sources import load_model
+from shapewright.errors import EstimationError, MeshFileError
+
+if TYPE_CHECKING:
+    from shapewright.estimation import Estimation
+
+
+def estimate(
+    mesh: Annotated[Path, typer.Argument(help="Mesh file: .off, .obj, .ply, .stl, .glb.", show_default=False)],
+    model: Annotated[
+        str, typer.Option("--model", "-m", help="Name of a shipped model, or a JSON file.", show_default=False)
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Write the fitted mesh (.glb, .obj, .off, .ply, .stl)."),
+    ] = None,
+    picture: Annotated[
+        Path | None, typer.Option(help="Write a PNG: the query, the fitted mesh, and both in one.")
+    ] = None,
+    samples: Annotated[
+        int | None, typer.Option(min=1, help="Random instances of layer 1 (default: 10000).", show_default=False)
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all random choices.")] = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Estimate the parameters of a procedural model so that it rebuilds a mesh.
+
+    The fitted mesh is written in the coordinates of your file, so that both lie on top of each other. The fewer
+    samples, the sooner it is done; the default is the method's own.
+
+    Examples:
+
+      [bold]shapewright estimate goblet.ply --model glass_with_stem[/]
+      [bold]shapewright estimate goblet.ply -m glass_with_stem --samples 500 -o fitted.glb --picture fit.png[/]
+    """
+    _refuse_endings(output, picture)
+    from shapewright.estimation import EstimationSettings
+    from shapewright.estimation import estimate as run_estimation
+    from shapewright.mesh_file import load_mesh
+
+    compiled = load_model(model).compile()
+    query = load_mesh(mesh)
+    settings = EstimationSettings(seed=seed, **({} if samples is None else {"samples": samples}))
+    started_s = time.monotonic()
+    with shown_progress("estimating") as progress:
+        estimation = run_estimation(query, compiled, settings, progress=progress)
+    seconds = time.monotonic() - started_s
+    for path in (output, picture):
+        if path is not None:
+            path.parent.mkdir(parents=True, exist_ok=True)
+    if output is not None:
+        estimation.mesh.save(output)
+    if picture is not None:
+        from cli.picture import save_side_by_side
+
+        save_side_by_side(query, estimation.mesh, picture, model_to_query=estimation.pose.rotation)
+    if as_json:
+        files = {"mesh_file": output and str(output), "picture_file": picture and str(picture)}
+        print_json(
+            {
+                "query": str(mesh),
+                "model": compiled.model.name,
+                **estimation.to_dict(),
+                **files,
+                "seconds": round(seconds, 3),
+            }
+        )
+        return
+    _print(estimation, seconds)
+    for path in (output, picture):
+        if path is not None:
+            typer.echo(f"written: {path}")
+
+
+def _refuse_endings(output: Path | None, picture: Path | None) -> None:
+    if output is not None and output.suffix.lower() not in (".glb", ".obj", ".off", ".ply", ".stl"):
+        raise MeshFileError("write one of .glb, .obj, .off, .ply, .stl", where=str(output))
+    if picture is not None and picture.suffix.lower() != ".png":
+        raise EstimationError("pictures are written as .png", where=str(picture))
+
+
+def _print(estimation: "Estimation", seconds: float) -> None:
+    console = stdout()
+    rows: list[dict[str, Any]] = [
+        {
+            "label": p.label, "unit": p.unit, "value": p.value, "base_value": p.base_value,
+            "minimum": p.minimum, "maximum": p.maximum,
+        }
+        for p in estimation.parameters
+    ]  # fmt: skip
+    console.print(parameter_table(rows))
+    distances = estimation.distances
+    console.print(
+        f"layer {estimation.layer} · distances: panorama {distances.panorama:.4g}, "
+        f"surface {distances.surface:.4g}, z-buffer {distances.zbuffer:.4g} · {seconds:.1f} s"
+    )

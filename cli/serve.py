@@ -1,0 +1,122 @@
+"""`shapewright serve`: the service and a worker together, with nothing else to install."""
+
+import os
+import socket
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from cli.console import AsJson, print_json
+from shapewright.errors import ShapewrightError
+
+if TYPE_CHECKING:
+    import uvicorn
+
+SHUTDOWN_S = 3
+
+
+class ServeError(ShapewrightError):
+    """The service cannot be started."""
+
+
+def serve(
+    host: Annotated[str, typer.Option(help="Address to listen on; 0.0.0.0 means every interface.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 takes a free one.")] = 8000,
+    data_dir: Annotated[
+        Path | None,
+        typer.Option(help="Folder of the database, files and queue (default: ./shapewright-data).", show_default=False),
+    ] = None,
+    worker: Annotated[bool, typer.Option(help="Start a worker beside the service.")] = True,
+    concurrency: Annotated[int, typer.Option(min=1, max=64, help="Jobs that the worker does at a time.")] = 1,
+    log_level: Annotated[str, typer.Option(help="debug, info, warning or error.")] = "warning",
+    as_json: AsJson = False,
+) -> None:
+    """Start the REST service, the dashboard and a worker; Ctrl-C stops all of them.
+
+    The embedded default needs no server: SQLite, a folder of files and a queue in --data-dir. For production set
+    SHAPEWRIGHT_DATABASE_URL, SHAPEWRIGHT_BROKER_URL and SHAPEWRIGHT_ARTIFACTS_URL, and start as many workers as you
+    like with [bold]celery -A workers.app worker[/].
+
+    With --json one document with the addresses is printed as soon as the service answers.
+
+    Examples:
+
+      [bold]shapewright serve[/]
+      [bold]shapewright serve --port 0 --data-dir /srv/shapewright --json[/]
+    """
+    if log_level.lower() not in ("debug", "info", "warning", "error"):
+        raise ServeError("use debug, info, warning or error", where=f"--log-level {log_level}")
+    if data_dir is not None:
+        os.environ["SHAPEWRIGHT_DATA_DIR"] = str(data_dir.resolve())
+    with ExitStack() as stack:
+        listener = stack.enter_context(_listen(host, port))
+        server = _make_server(log_level.lower())
+        worker_pid = None
+        if worker:
+            from cli.worker_process import WorkerProcess, worker_command
+
+            child = WorkerProcess(worker_command(concurrency, log_level.upper()), os.environ, say=_remark)
+            worker_pid = child.start()
+            stack.callback(child.stop)
+        shown_host = "127.0.0.1" if host in ("0.0.0.0", "::", "") else host
+        url = f"http://{shown_host}:{listener.getsockname()[1]}"
+        _announce(server, url, worker_pid, as_json)
+        server.run(sockets=[listener])
+        if not server.started:
+            raise ServeError("the service did not start; its messages are above")
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    """Take the port before anything is started, so that a busy one is a clear error."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    listener = socket.socket(family, socket.SOCK_STREAM)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind((host, port))
+    except (OSError, OverflowError) as error:
+        listener.close()
+        reason = getattr(error, "strerror", None) or str(error)
+        raise ServeError(f"cannot listen there: {reason}", where=f"{host}:{port}") from None
+    return listener
+
+
+def _make_server(log_level: str) -> "uvicorn.Server":
+    import uvicorn
+    from service.app import create_app
+
+    config = uvicorn.Config(create_app(), log_level=log_level, timeout_graceful_shutdown=SHUTDOWN_S)
+    return uvicorn.Server(config)
+
+
+def _announce(server: "uvicorn.Server", url: str, worker_pid: int | None, as_json: bool) -> None:
+    """Print the addresses once the service answers; uvicorn calls ``startup`` before it takes requests."""
+    startup = server.startup
+
+    async def startup_and_tell(sockets: list[socket.socket] | None = None) -> None:
+        await startup(sockets=sockets)
+        if not server.started:
+            return
+        if as_json:
+            print_json(
+                {
+                    "url": url,
+                    "dashboard_url": f"{url}/",
+                    "documentation_url": f"{url}/docs",
+                    "pid": os.getpid(),
+                    "worker_pid": worker_pid,
+                }
+            )
+        else:
+            typer.echo(f"Dashboard      {url}/")
+            typer.echo(f"API reference  {url}/docs")
+            typer.echo("Ctrl-C stops the service and its worker." if worker_pid else "Ctrl-C stops the service.")
+        sys.stdout.flush()
+
+    server.startup = startup_and_tell  # type: ignore[method-assign]
+
+
+def _remark(message: str) -> None:
+    print(f"shapewright: {message}", file=sys.stderr, flush=True)

@@ -1,0 +1,70 @@
+"""Where the verbs get procedural models and parameter values from: the shipped library, files, options."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import models_store
+from shapewright.errors import ModelError, ParameterError
+
+if TYPE_CHECKING:
+    from shapewright.modeling import ProceduralModel
+
+LIBRARY = Path(models_store.__file__).parent / "library"
+
+
+def library_files() -> dict[str, Path]:
+    """Return the files of the procedural models that ship, by name."""
+    return {path.parent.name: path for path in sorted(LIBRARY.glob("*/model.json"))}
+
+
+def load_model(source: str) -> "ProceduralModel":
+    """Load a procedural model by the name of a shipped one or from a JSON file.
+
+    Raises:
+        ModelError: neither a shipped name nor a file, or a document that is not valid.
+    """
+    from shapewright.modeling import ProceduralModel
+
+    shipped = library_files()
+    if source in shipped:
+        return ProceduralModel.load(shipped[source])
+    path = Path(source)
+    if path.is_file():
+        return ProceduralModel.load(path)
+    names = ", ".join(shipped) or "none"
+    raise ModelError(f"neither a file nor a shipped model (these ship: {names})", where=repr(source))
+
+
+def load_models(sources: list[str] | None) -> "list[ProceduralModel]":
+    """Load the named models, or every shipped one when none is named."""
+    return [load_model(source) for source in (sources or list(library_files()))]
+
+
+def read_assignments(assignments: list[str] | None, values_file: Path | None) -> dict[str, float]:
+    """Read ``name=value`` options on top of a JSON file ``{"name": value}``; values are relative, 1 is the base.
+
+    Raises:
+        ParameterError: not of that form.
+    """
+    values: dict[str, float] = {}
+    if values_file is not None:
+        try:
+            loaded = json.loads(values_file.read_text(encoding="utf-8"))
+        except ValueError as error:
+            raise ParameterError(f"not JSON: {error}", where=str(values_file)) from None
+        if not isinstance(loaded, dict):
+            raise ParameterError('expected an object {"name": value}', where=str(values_file))
+        for name, value in loaded.items():
+            if isinstance(value, bool) or not isinstance(value, int | float):
+                raise ParameterError(f"not a number: {value!r}", where=f"{values_file}: {name}")
+            values[name] = float(value)
+    for assignment in assignments or []:
+        name, equals, text = assignment.partition("=")
+        try:
+            values[name.strip()] = float(text)
+        except ValueError:
+            equals = ""
+        if not equals:
+            raise ParameterError("expected name=number", where=f"--set {assignment}")
+    return values

@@ -1,0 +1,65 @@
+"""`shapewright train`: a classifier out of procedural models, as one ONNX file."""
+
+import time
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from cli.console import AsJson, print_json, shown_progress
+from cli.sources import load_models
+from shapewright.errors import ClassifierError
+
+
+def train(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Classifier file, .onnx.", show_default=False)],
+    models: Annotated[
+        list[str] | None,
+        typer.Argument(help="Shipped models or JSON files; default: every shipped model.", show_default=False),
+    ] = None,
+    variations: Annotated[
+        int | None, typer.Option(min=1, help="Random variations of each class (default: 1000).", show_default=False)
+    ] = None,
+    images: Annotated[
+        int | None, typer.Option(min=1, help="Images of each variation (default: 10).", show_default=False)
+    ] = None,
+    epochs: Annotated[int | None, typer.Option(min=1, help="Passes over the images.", show_default=False)] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of variations, views and training.")] = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Train a classifier with pictures of random variations; models of one class are trained together.
+
+    Examples:
+
+      [bold]shapewright train -o classifier.onnx[/]                                    the shipped models
+      [bold]shapewright train table sword lamp.json -o mine.onnx --variations 200[/]   and one of your own
+    """
+    if output.suffix.lower() != ".onnx":
+        raise ClassifierError("classifiers are written as .onnx", where=str(output))
+    from shapewright.classification import TrainingSettings, train_classifier
+
+    by_class: dict[str, list[Any]] = {}
+    for model in load_models(models):
+        by_class.setdefault(model.class_name, []).append(model.compile())
+    chosen = {"variations": variations, "images_per_variation": images, "epochs": epochs}
+    settings = TrainingSettings(seed=seed, **{name: value for name, value in chosen.items() if value is not None})
+    started_s = time.monotonic()
+    with shown_progress("training") as progress:
+        trained = train_classifier(by_class, settings, progress=progress)
+    seconds = time.monotonic() - started_s
+    output.parent.mkdir(parents=True, exist_ok=True)
+    output.write_bytes(trained.onnx)
+    if as_json:
+        print_json(
+            {
+                "file": str(output),
+                "class_names": list(trained.class_names),
+                "metrics": trained.metrics,
+                "seconds": round(seconds, 3),
+            }
+        )
+        return
+    typer.echo(f"{output}: {', '.join(trained.class_names)} ({seconds:.0f} s)")
+    for name, value in trained.metrics.items():
+        if isinstance(value, float):
+            typer.echo(f"  {name}: {value:.4g}")
