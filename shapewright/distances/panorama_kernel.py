@@ -35,6 +35,15 @@ otherwise be hit on a side that rounding chooses)."""
 FLAT = 1e-3
 """Standard deviations well below this have no skewness (of what is rounding)."""
 
+_PARTS = np.arange(COLUMNS)
+_RAY_COS = np.cos((_PARTS + 0.5) * (2.0 * np.pi / COLUMNS))
+_RAY_SIN = np.sin((_PARTS + 0.5) * (2.0 * np.pi / COLUMNS))
+_COS = np.cos(_PARTS * (2.0 * np.pi / COLUMNS))  # of k / COLUMNS of a turn
+_SIN = np.sin(_PARTS * (2.0 * np.pi / COLUMNS))
+_WAVE_PARTS = np.outer(np.arange(MOST_TURNS + 1), _PARTS) % COLUMNS
+_WAVE_COS = _COS[_WAVE_PARTS].astype(np.float32)
+_WAVE_SIN = _SIN[_WAVE_PARTS].astype(np.float32)
+
 
 def _compiled(**options: Any) -> Any:
     return numba.njit(cache=True, error_model="numpy", **options)
@@ -169,11 +178,6 @@ def draw_cylinder(points, triangles, normal_power, depth, normal):
     short way round. So the candidates are exact, also across the seam at angle 0, and the depth of each is the
     exact crossing of ray and segment. Surface above, below or beyond the cylinder is not drawn.
     """
-    cosines = np.empty(COLUMNS)
-    sines = np.empty(COLUMNS)
-    for u in range(COLUMNS):
-        cosines[u] = math.cos((u + 0.5) * 2.0 * math.pi / COLUMNS)
-        sines[u] = math.sin((u + 0.5) * 2.0 * math.pi / COLUMNS)
     columns_per_rad = COLUMNS / (2.0 * math.pi)
     for f in range(triangles.shape[0]):
         low, middle, high = triangles[f, 0], triangles[f, 1], triangles[f, 2]
@@ -211,13 +215,13 @@ def draw_cylinder(points, triangles, normal_power, depth, normal):
             dx, dy = qx - px, qy - py
             for column in range(lower, upper + 1):
                 u = column % COLUMNS
-                across = cosines[u] * dy - sines[u] * dx
+                across = _RAY_COS[u] * dy - _RAY_SIN[u] * dx
                 if across == 0.0:
                     continue
                 distance = min(area_cross / across, farthest)
                 if ON_AXIS < distance <= 1.0 and distance > depth[v, u]:
                     depth[v, u] = distance
-                    normal[v, u] = abs(cosines[u] * nx + sines[u] * ny) ** normal_power
+                    normal[v, u] = abs(_RAY_COS[u] * nx + _RAY_SIN[u] * ny) ** normal_power
 
 
 @_compiled()
@@ -235,13 +239,6 @@ def _cut(points, lower, upper, height):
 def _fourier(image, out):
     """Magnitudes of the low frequencies of the 2-D DFT, divided by their sum; zeros for an empty map."""
     turns = MOST_TURNS + 1
-    cosines = np.empty((turns, COLUMNS), dtype=np.float32)
-    sines = np.empty((turns, COLUMNS), dtype=np.float32)
-    for m in range(turns):
-        for u in range(COLUMNS):
-            angle = 2.0 * math.pi * ((m * u) % COLUMNS) / COLUMNS
-            cosines[m, u] = math.cos(angle)
-            sines[m, u] = math.sin(angle)
     waves = 2 * MOST_WAVES + 1
     real = np.zeros((waves, turns))
     imaginary = np.zeros((waves, turns))
@@ -253,11 +250,11 @@ def _fourier(image, out):
             row_real = np.float32(0.0)
             row_imaginary = np.float32(0.0)
             for u in range(COLUMNS):
-                row_real += row[u] * cosines[m, u]
-                row_imaginary -= row[u] * sines[m, u]
+                row_real += row[u] * _WAVE_COS[m, u]
+                row_imaginary -= row[u] * _WAVE_SIN[m, u]
             for n in range(waves):
-                angle = 2.0 * math.pi * (((n - MOST_WAVES) * v) % ROWS) / ROWS
-                c, s = math.cos(angle), math.sin(angle)
+                part = (2 * (n - MOST_WAVES) * v) % COLUMNS
+                c, s = _COS[part], _SIN[part]
                 real[n, m] += row_real * c + row_imaginary * s
                 imaginary[n, m] += row_imaginary * c - row_real * s
     total = 0.0

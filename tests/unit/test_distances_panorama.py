@@ -17,7 +17,7 @@ from shapewright.distances.panorama import (
 )
 from shapewright.errors import MeshError
 
-ROTATION_TOLERANCE = 0.01
+ROTATION_TOLERANCE = 1e-3
 """What a rotation may change, in a distance that lies in [0, 2] and is 0.3 and more between kinds of objects."""
 
 
