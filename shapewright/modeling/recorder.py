@@ -4,6 +4,7 @@ Every call carries out an operation on the object as it is at x = 1 and appends 
 where things are (:meth:`Recorder.centre`, :meth:`Recorder.faces_towards`) and refer to what it made.
 """
 
+import copy
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -151,6 +152,7 @@ class Recorder:
         along: Element,
         steps: Iterable[tuple[float, float]],
         width: float = 1.0,
+        /,
         **varies: str,
     ) -> None:
         """Sketch a curve from a face: for each (angle_deg, length) one rotation-extrude about the edge ``along``.
@@ -171,9 +173,13 @@ class Recorder:
         angle_deg: float,
         length: float,
         width: float = 1.0,
+        /,
         **varies: str,
     ) -> None:
-        """Extrude a face and turn it about one of its edges; modes: length, width."""
+        """Extrude a face and turn it about one of its edges; modes: length, width.
+
+        Arguments are positional, because the modes have the same names.
+        """
         self._do(RotationExtrude(element, along, angle_deg, length, width), varies)
 
     def insert_vertex(
@@ -322,10 +328,12 @@ class Recorder:
                 known = ", ".join(operation.modes) or "none"
                 raise ModelError(f"{operation.kind} has no mode {mode!r}; it has: {known}")
         index = len(self._operations)
+        mesh = copy.deepcopy(self.mesh)  # a refused operation leaves everything as it was
         try:
-            step = operation.apply(self.mesh)
+            step = operation.apply(mesh)
         except ModelError as error:
             raise ModelError(error.message, where=f"operations[{index}] ({operation.kind})") from None
+        self.mesh = mesh
         grown = np.zeros((self.mesh.n_vertices, 1, 3))
         grown[: len(self._positions)] = self._positions
         self._positions = grown

@@ -42,6 +42,8 @@ class Extrude(Operation):
 
     def apply(self, mesh: ControlMesh) -> Step:
         """Add the sides and lift the faces."""
+        if not self.targets:
+            raise ModelError("nothing is selected")
         frames = frames_of_targets(mesh, self.targets)
         loops = [single_face(mesh, target) for target in self.targets]
         lifted = [mesh.lift_face(target.elements[0].id) for target in self.targets]

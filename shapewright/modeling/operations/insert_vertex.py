@@ -41,6 +41,8 @@ class InsertVertex(Operation):
 
     def apply(self, mesh: ControlMesh) -> Step:
         """Split the edges."""
+        if not self.edges:
+            raise ModelError("nothing is selected")
         rows = []
         for edge, backwards in self.edges:
             if edge.kind != "edge":

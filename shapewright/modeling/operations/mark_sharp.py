@@ -21,6 +21,8 @@ class MarkSharp(Operation):
 
     def apply(self, mesh: ControlMesh) -> Step:
         """Mark the elements."""
+        if not self.elements:
+            raise ModelError("nothing is selected")
         for element in self.elements:
             if element.kind == "vertex":
                 mesh.vertices_of([element])

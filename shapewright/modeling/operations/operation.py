@@ -3,7 +3,7 @@
 import dataclasses
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from typing import Any, ClassVar, Protocol, Self
+from typing import Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -20,6 +20,7 @@ Mode = Callable[[Quantities, Amounts], Quantities]
 """How a parameter x changes the procedure parameters; x = 1 changes nothing."""
 
 
+@runtime_checkable
 class Step(Protocol):
     """The geometric half of an operation, bound to the topology in which it was made."""
 
@@ -65,7 +66,7 @@ class Operation(ABC):
         return {f.name: f.metadata["kind"] for f in dataclasses.fields(cls)}
 
     @classmethod
-    def from_document(cls, document: Mapping[str, Any], where: str) -> Self:
+    def from_document(cls, document: Mapping[str, Any], where: str) -> "Operation":
         """Make the operation from its JSON object (without ``op``).
 
         Raises:

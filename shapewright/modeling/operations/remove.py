@@ -24,6 +24,8 @@ class Remove(Operation):
 
     def apply(self, mesh: ControlMesh) -> Step:
         """Remove the elements."""
+        if not self.elements:
+            raise ModelError("nothing is selected")
         for element in self.elements:
             if element.kind == "face":
                 mesh.remove_face(element.id)
