@@ -3,11 +3,10 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
 from shapewright.errors import EstimationError
 
@@ -59,14 +58,14 @@ class Pose:
         """The points in the target space."""
         return np.asarray(points @ self._linear + self.translation)
 
-    def inverse(self) -> Self:
+    def inverse(self) -> "Pose":
         """The pose that takes everything back."""
         scale = 1.0 / self.scale
-        return type(self)(self.rotation.T, -scale * (self.rotation.T @ self.translation), scale)
+        return Pose(self.rotation.T, -scale * (self.rotation.T @ self.translation), scale)
 
-    def compose(self, inner: "Pose") -> Self:
+    def compose(self, inner: "Pose") -> "Pose":
         """This pose after ``inner``: ``a.compose(b).apply(p) == a.apply(b.apply(p))``."""
-        return type(self)(
+        return Pose(
             self.rotation @ inner.rotation,
             self.scale * (self.rotation @ inner.translation) + self.translation,
             self.scale * inner.scale,
@@ -92,8 +91,8 @@ def rotations_24() -> Float[np.ndarray, "24 3 3"]:
     for target in (*axes, *-axes):
         side = np.roll(np.abs(target), 1)
         other = np.cross(target, side)
-        for turned in (side, other, -side, -other):
-            rotations.append(np.stack([target, turned, np.cross(target, turned)], axis=1))
+        quarter_turns = (side, other, -side, -other)
+        rotations += [np.stack([target, turned, np.cross(target, turned)], axis=1) for turned in quarter_turns]
     return np.stack(rotations)
 
 
@@ -191,8 +190,15 @@ _MOVES = 14  # both directions of three translations, three rotations and the sc
 
 def _turns(angle_rad: float) -> Float[np.ndarray, "3 2 3 3"]:
     """Rotation about each axis by plus and minus an angle."""
-    vectors = np.stack([angle_rad * np.eye(3), -angle_rad * np.eye(3)], axis=1)
-    return np.asarray(Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()).reshape(3, 2, 3, 3)
+    identity = np.eye(3)
+    cosine, sine = np.cos(angle_rad), np.sin(angle_rad)
+    turns = np.empty((3, 2, 3, 3))
+    for axis, vector in enumerate(identity):
+        along = np.outer(vector, vector)
+        quarter = np.cross(vector, identity).T  # quarter @ p == cross(vector, p)
+        turns[axis, 0] = along + cosine * (identity - along) + sine * quarter
+        turns[axis, 1] = turns[axis, 0].T
+    return turns
 
 
 def _moved(

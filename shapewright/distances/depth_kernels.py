@@ -157,9 +157,7 @@ def compare_passes(points, triangles, frames, query_views, query_covered, sums):
         depths = np.empty(points.shape[0], dtype=np.float64)
         front = np.empty((size, size), dtype=np.float32)
         back = np.empty((size, size), dtype=np.float32)
-        first_column, last_column, first_row, last_row = project(
-            points, frames[k], size, columns, rows, depths
-        )
+        first_column, last_column, first_row, last_row = project(points, frames[k], size, columns, rows, depths)
         for j in range(first_row, last_row + 1):
             for i in range(first_column, last_column + 1):
                 front[j, i] = np.inf

@@ -66,16 +66,12 @@ class ZBufferTarget:
         ValueError: ``size`` is odd or below 2.
     """
 
-    def __init__(
-        self, vertices: Float[np.ndarray, "V 3"], triangles: Int[np.ndarray, "F 3"], size: int = 256
-    ) -> None:
+    def __init__(self, vertices: Float[np.ndarray, "V 3"], triangles: Int[np.ndarray, "F 3"], size: int = 256) -> None:
         check_size(size)
         self.views = depth_views(vertices, triangles, size)
         self._covered = np.isfinite(self.views[::2]).sum(axis=(1, 2)).astype(np.int64)
 
-    def distance(
-        self, vertices: Float[np.ndarray, "V 3"], triangles: Int[np.ndarray, "F 3"]
-    ) -> ZBufferDistance:
+    def distance(self, vertices: Float[np.ndarray, "V 3"], triangles: Int[np.ndarray, "F 3"]) -> ZBufferDistance:
         """Distance of a generated object to the query, both in the same coordinates."""
         points, indices = prepared(vertices, triangles)
         sums = np.empty((len(PASS_FRAMES), 2))

@@ -1,0 +1,221 @@
+"""The query-independent half of layer 1: random instances and their panorama descriptors (section 3.3)."""
+
+import io
+import json
+import os
+import zipfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from jaxtyping import Float, Float32
+
+from shapewright.errors import EstimationError
+from shapewright.estimation.generator import InstanceGenerator
+from shapewright.progress import NULL_PROGRESS, Progress
+
+FORMAT: Final = "shapewright-panorama-bank"
+VERSION: Final = 1
+
+_CHUNK_BYTES: Final = 32 * 2**20
+_ALIGNMENT: Final = 64
+
+
+@dataclass(frozen=True, eq=False)
+class PanoramaBank:
+    """Random values of a model and the descriptors of their instances.
+
+    Args:
+        values: x of each instance.
+        descriptors: flat panorama descriptors, one row an instance; may be a read-only memory map.
+        model_digest: the model they belong to.
+        subdivision_steps: of the instances.
+
+    Raises:
+        EstimationError: no rows, or the arrays differ in length.
+    """
+
+    values: Float[np.ndarray, "N P"]
+    descriptors: Float32[np.ndarray, "N D"]
+    model_digest: str
+    subdivision_steps: int = 2
+
+    def __post_init__(self) -> None:
+        if len(self.values) == 0 or len(self.values) != len(self.descriptors):
+            counts = f"{len(self.values)} and {len(self.descriptors)}"
+            raise EstimationError(f"a bank has as many values as descriptors, got {counts}", where="bank")
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def check_fits(self, generator: InstanceGenerator, subdivision_steps: int) -> None:
+        """Raise EstimationError unless the bank was built from this model, in this way."""
+        from shapewright.distances.panorama import DESCRIPTOR_SIZE
+
+        if self.model_digest != generator.model.digest:
+            raise EstimationError("the bank belongs to another model or another version of it", where="bank")
+        if self.subdivision_steps != subdivision_steps:
+            raise EstimationError(
+                f"the bank was built with {self.subdivision_steps} subdivision steps, not {subdivision_steps}",
+                where="bank",
+            )
+        widths = (self.values.shape[1], self.descriptors.shape[1])
+        if widths != (len(generator.minimum), DESCRIPTOR_SIZE):
+            raise EstimationError("the bank was built by another version of the descriptor", where="bank")
+
+    def save(self, path: str | Path) -> None:
+        """Write one uncompressed ``.npz`` file, completely or not at all.
+
+        numpy reads it, and :meth:`load` maps its arrays into memory: each begins at a multiple of 64 bytes.
+
+        Raises:
+            OSError: the file cannot be written.
+        """
+        target = Path(path)
+        header = {
+            "format": FORMAT,
+            "version": VERSION,
+            "model_digest": self.model_digest,
+            "subdivision_steps": self.subdivision_steps,
+        }
+        partial = target.with_name(f"{target.name}.partial{os.getpid()}")
+        try:
+            with zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED, allowZip64=True) as archive:
+                text = np.frombuffer(json.dumps(header).encode(), dtype=np.uint8)
+                for name, array in (("header", text), ("values", self.values), ("descriptors", self.descriptors)):
+                    _write_aligned(archive, f"{name}.npy", array)
+            partial.replace(target)
+        finally:
+            partial.unlink(missing_ok=True)
+
+    @classmethod
+    def load(cls, path: str | Path, *, memory_map: bool = True) -> "PanoramaBank":
+        """Read a bank; with ``memory_map`` the arrays stay in the file and are read when used.
+
+        Raises:
+            EstimationError: the file is no bank, is damaged, or is of an unknown version.
+            OSError: the file cannot be opened.
+        """
+        source = Path(path)
+        try:
+            with zipfile.ZipFile(source) as archive:
+                header = json.loads(_read_array(archive, source, "header.npy", memory_map=False).tobytes())
+                if header["format"] != FORMAT or header["version"] != VERSION:
+                    raise EstimationError("this version of the bank's format is unknown", where=source.name)
+                values = _read_array(archive, source, "values.npy", memory_map=memory_map)
+                descriptors = _read_array(archive, source, "descriptors.npy", memory_map=memory_map)
+                return cls(values, descriptors, str(header["model_digest"]), int(header["subdivision_steps"]))
+        except (zipfile.BadZipFile, KeyError, ValueError, TypeError, EOFError) as error:
+            raise EstimationError(f"the file is no bank or is damaged: {error}", where=source.name) from error
+
+
+def bank_chunks(
+    generator: InstanceGenerator,
+    samples: int,
+    rng: np.random.Generator,
+    *,
+    subdivision_steps: int = 2,
+    progress: Progress = NULL_PROGRESS,
+) -> Iterator[PanoramaBank]:
+    """Build a bank piece by piece, so that a caller has what is finished if ``progress`` cancels.
+
+    A model without parameters has one instance, whatever ``samples`` says. Work memory is bounded: a piece
+    holds at most 32 MiB of vertices.
+
+    Raises:
+        EstimationError: fewer than one sample.
+    """
+    from shapewright.distances.panorama import panorama_descriptors
+
+    if samples < 1:
+        raise EstimationError(f"a bank needs at least one instance, got {samples}", where="samples")
+    if len(generator.minimum) == 0:
+        samples = 1
+    triangles = generator.surface_triangles(subdivision_steps)
+    n_vertices = int(triangles.max()) + 1
+    size = max(1, min(256, _CHUNK_BYTES // (24 * n_vertices)))
+    values = generator.random_values(rng, samples)  # at once: the same rows however they are cut into pieces
+    for start in range(0, samples, size):
+        progress.report(start / samples, f"random instances: {start} of {samples}")
+        rows = values[start : start + size]
+        points = generator.surface_points(rows, subdivision_steps)
+        batch = panorama_descriptors(points, triangles).to_array()
+        yield PanoramaBank(rows, batch, generator.model.digest, subdivision_steps)
+    progress.report(1.0, f"random instances: {samples} of {samples}")
+
+
+def joined(chunks: list[PanoramaBank]) -> PanoramaBank:
+    """One bank of several of the same model."""
+    return PanoramaBank(
+        np.concatenate([chunk.values for chunk in chunks]),
+        np.concatenate([chunk.descriptors for chunk in chunks]),
+        chunks[0].model_digest,
+        chunks[0].subdivision_steps,
+    )
+
+
+def build_bank(
+    generator: InstanceGenerator,
+    samples: int = 10_000,
+    rng: np.random.Generator | None = None,
+    progress: Progress = NULL_PROGRESS,
+    *,
+    subdivision_steps: int = 2,
+) -> PanoramaBank:
+    """Random instances (every parameter uniform in its range) and their descriptors.
+
+    Args:
+        generator: a compiled model.
+        samples: instances, 10 000 in the paper.
+        rng: source of the values; seeded with 0 if not given.
+        progress: told after every piece; may cancel.
+        subdivision_steps: of the instances.
+
+    Raises:
+        EstimationError: fewer than one sample.
+    """
+    rng = np.random.default_rng(0) if rng is None else rng
+    chunks = bank_chunks(generator, samples, rng, subdivision_steps=subdivision_steps, progress=progress)
+    return joined(list(chunks))
+
+
+def _write_aligned(archive: zipfile.ZipFile, name: str, array: Any) -> None:
+    """Store an array so that its data begin at a multiple of 64 bytes of the file (padding in the extra field)."""
+    buffer = io.BytesIO()
+    np.lib.format.write_array_header_1_0(buffer, np.lib.format.header_data_from_array_1_0(np.ascontiguousarray(array)))
+    npy_header = buffer.getvalue()
+    info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
+    # 30 bytes of local header and the name precede the extra field; force_zip64 adds its own 20 bytes
+    begin = archive.fp.tell() + 30 + len(name) + 20 + 4 + len(npy_header)  # type: ignore[union-attr]
+    padding = -begin % _ALIGNMENT
+    info.extra = b"\x57\x53" + padding.to_bytes(2, "little") + bytes(padding)
+    with archive.open(info, "w", force_zip64=True) as member:
+        member.write(npy_header)
+        member.write(np.ascontiguousarray(array).reshape(-1).view(np.uint8).data)
+
+
+def _read_array(archive: zipfile.ZipFile, path: Path, name: str, *, memory_map: bool) -> Any:
+    if not memory_map:
+        with archive.open(name) as member:
+            return np.lib.format.read_array(member, allow_pickle=False)
+    info = archive.getinfo(name)
+    if info.compress_type != zipfile.ZIP_STORED:
+        raise ValueError("its arrays are compressed")
+    with path.open("rb") as file:
+        file.seek(info.header_offset + 26)
+        name_length = int.from_bytes(file.read(2), "little")
+        extra_length = int.from_bytes(file.read(2), "little")
+        file.seek(info.header_offset + 30 + name_length + extra_length)
+        version = np.lib.format.read_magic(file)
+        if version != (1, 0):
+            raise ValueError("its arrays are of an unknown version")
+        shape, fortran_order, dtype = np.lib.format.read_array_header_1_0(file)
+        if fortran_order or dtype.hasobject:
+            raise ValueError("its arrays are of an unknown kind")
+        if file.tell() + dtype.itemsize * int(np.prod(shape)) > path.stat().st_size:
+            raise ValueError("it is truncated")
+        if 0 in shape:  # a model without parameters; an empty range cannot be mapped
+            return np.empty(shape, dtype)
+        return np.memmap(path, dtype, "r", file.tell(), shape)

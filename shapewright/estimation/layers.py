@@ -1,0 +1,138 @@
+"""The steps of the three layers (paper section 3.3, Figure 4)."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from shapewright.distances.alignment import Pose, realign, rotations_24
+from shapewright.distances.panorama import panorama_distances
+from shapewright.estimation.bank import PanoramaBank
+from shapewright.estimation.comparison import Comparison
+from shapewright.estimation.hill_climbing import Candidate, Evaluate, hill_climb, without_pose
+from shapewright.estimation.steady_progress import SteadyProgress
+from shapewright.progress import Progress
+
+Improved = Callable[[Candidate], None]
+"""Told about every new incumbent, so that a cancelled estimation has its best so far."""
+
+PosedDistance = Callable[[np.ndarray], float]
+
+_SCAN_ROWS = 1024
+
+
+def nearest_in_bank(comparison: Comparison, bank: PanoramaBank) -> Candidate:
+    """Start of layer 1: the random instance with the smallest panorama distance to the query."""
+    best, distance = 0, np.inf
+    for start in range(0, len(bank), _SCAN_ROWS):
+        distances = panorama_distances(comparison.descriptor, bank.descriptors[start : start + _SCAN_ROWS])
+        row = int(np.argmin(distances))
+        if distances[row] < distance:
+            best, distance = start + row, float(distances[row])
+    return Candidate(np.array(bank.values[best], dtype=np.float64), distance)
+
+
+def climb_panorama(comparison: Comparison, start: Candidate, progress: Progress, improved: Improved) -> Candidate:
+    """Rest of layer 1: hill climbing with the panorama distance, which knows no pose."""
+    measured = without_pose(lambda values: comparison.panorama(comparison.points(values)))
+    return _climb(comparison, measured, start, progress, improved, "panorama distance")
+
+
+def align_in_24_ways(
+    comparison: Comparison, start: Candidate, progress: Progress, steady: SteadyProgress, improved: Improved
+) -> Candidate:
+    """Start of layer 2: the best alignment by surface distance out of those begun at each of the 24
+    rotations.
+
+    The result's distance is the surface distance. ``improved`` is told in the same terms.
+    """
+    points = comparison.points(start.values)
+    normal = comparison.initial_pose(points)
+    best: Candidate | None = None
+    rotations = rotations_24()
+    for k, rotation in enumerate(rotations):
+        known = "" if best is None else f", surface distance {best.distance:.4f}"
+        progress.report(k / len(rotations), f"orientation {k + 1} of {len(rotations)}{known}")
+        alignment = realign(
+            points,
+            comparison.surface,
+            Pose(rotation).compose(normal),
+            comparison.settings.alignment,
+            checkpoint=steady.repeat,
+        )
+        if best is None or alignment.distance < best.distance:
+            best = Candidate(start.values, alignment.distance, alignment.pose)
+            improved(best)
+    assert best is not None
+    progress.report(1.0, f"aligned, surface distance {best.distance:.4f}")
+    return best
+
+
+def climb_surface(
+    comparison: Comparison,
+    start: Candidate,
+    original_scale: float,
+    progress: Progress,
+    steady: SteadyProgress,
+    improved: Improved,
+) -> Candidate:
+    """Rest of layer 2: hill climbing with the surface distance, realigned after every change."""
+    evaluate = _realigned(comparison, comparison.surface, original_scale, steady)
+    begin = evaluate(start.values, start)
+    improved(begin)
+    return _climb(comparison, evaluate, begin, progress, improved, "surface distance")
+
+
+def climb_zbuffer(
+    comparison: Comparison,
+    start: Candidate,
+    original_scale: float,
+    progress: Progress,
+    steady: SteadyProgress,
+    improved: Improved,
+) -> Candidate:
+    """One of the two climbs of layer 3: with the z-buffer distance, realigned after every change."""
+    evaluate = _realigned(comparison, comparison.zbuffer, original_scale, steady)
+    begin = evaluate(start.values, start)
+    improved(begin)
+    return _climb(comparison, evaluate, begin, progress, improved, "z-buffer distance")
+
+
+def _realigned(
+    comparison: Comparison, distance: PosedDistance, original_scale: float, steady: SteadyProgress
+) -> Evaluate:
+    """Measure an instance at the best pose that is found from the incumbent's; generated once for all poses."""
+
+    def evaluate(values: np.ndarray, incumbent: Candidate) -> Candidate:
+        points = comparison.points(values)
+        alignment = realign(
+            points,
+            distance,
+            incumbent.pose or comparison.initial_pose(points),
+            comparison.settings.alignment,
+            original_scale=original_scale,
+            checkpoint=steady.repeat,
+        )
+        return Candidate(values, alignment.distance, alignment.pose)
+
+    return evaluate
+
+
+def _climb(
+    comparison: Comparison,
+    evaluate: Evaluate,
+    start: Candidate,
+    progress: Progress,
+    improved: Improved,
+    name: str,
+) -> Candidate:
+    climb = hill_climb(
+        evaluate,
+        start,
+        comparison.generator.minimum,
+        comparison.generator.maximum,
+        comparison.settings.step_sizes,
+        progress=progress,
+        on_improvement=improved,
+        name=name,
+    )
+    return climb.best

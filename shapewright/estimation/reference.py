@@ -1,0 +1,197 @@
+"""The reference estimator: the paper, step by step (section 3.3, Figure 4)."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from shapewright.distances.alignment import Pose
+from shapewright.errors import Cancelled
+from shapewright.estimation import layers
+from shapewright.estimation.bank import PanoramaBank, bank_chunks, joined
+from shapewright.estimation.comparison import Comparison
+from shapewright.estimation.generator import InstanceGenerator
+from shapewright.estimation.hill_climbing import Candidate
+from shapewright.estimation.result import (
+    STAGE_LAYERS,
+    Estimation,
+    EstimationCancelled,
+    ParameterEstimate,
+    Stage,
+    StageName,
+)
+from shapewright.estimation.settings import EstimationSettings
+from shapewright.estimation.steady_progress import SteadyProgress, phases
+from shapewright.estimation.verdict import choose
+from shapewright.mesh import TriangleMesh
+from shapewright.progress import Progress
+
+_WEIGHTS = {
+    "bank": 30.0,
+    "layer 1": 10.0,
+    "layer 2, alignment": 10.0,
+    "layer 2": 20.0,
+    "layer 3 after layer 2": 15.0,
+    "layer 3 after layer 1": 15.0,
+}
+
+
+class ReferenceEstimator:
+    """One run of the reference estimator over one query.
+
+    The readings that the paper leaves open:
+
+    - The initial normalisation brings the query and the instance of layer 1 into the shared coordinate system
+      once; afterwards the pose alone moves the instance. Normalising every instance anew would let each
+      change of one length rescale everything else.
+    - The limits of the scale are shares of the scale that this normalisation gave.
+    - A climb that is realigned begins at the realigned start, and each candidate's realignment at the pose of
+      the incumbent.
+    - If layer 2 changed nothing, the second start of layer 3 equals the first and is not run again.
+    """
+
+    def __init__(
+        self,
+        query: TriangleMesh,
+        generator: InstanceGenerator,
+        settings: EstimationSettings,
+        progress: Progress,
+    ) -> None:
+        self._query = query
+        self._generator = generator
+        self._settings = settings
+        self._steady = SteadyProgress(progress)
+        self._found: dict[StageName, Candidate] = {}
+        self._finished: set[StageName] = set()
+        self._comparison: Comparison | None = None
+
+    def run(self, bank: PanoramaBank | None) -> Estimation:
+        """Work through the layers.
+
+        Raises:
+            EstimationCancelled: the progress cancelled; carries the best so far.
+            EstimationError: the bank does not fit.
+            MeshError: the query or an instance has no extent.
+        """
+        try:
+            self._work(bank)
+            return self._estimation()
+        except Cancelled as cancelled:
+            raise EstimationCancelled(self._estimation() if self._found else None) from cancelled
+
+    def _work(self, bank: PanoramaBank | None) -> None:
+        settings = self._settings
+        bank_rng, points_rng = np.random.default_rng(settings.seed).spawn(2)
+        weights = {name: weight for name, weight in _WEIGHTS.items() if bank is None or name != "bank"}
+        phase = phases(self._steady, weights)
+        self._steady.report(0.0, "preparing the query")
+        comparison = Comparison(self._query, self._generator, settings, points_rng)
+        self._comparison = comparison
+        if bank is None:
+            bank = self._build_bank(comparison, bank_rng, phase["bank"])
+        else:
+            bank.check_fits(self._generator, settings.subdivision_steps)
+
+        start = layers.nearest_in_bank(comparison, bank)
+        self._found["panorama"] = start
+        first = layers.climb_panorama(comparison, start, phase["layer 1"], self._keep("panorama"))
+        original_scale = comparison.initial_pose(comparison.points(first.values)).scale
+        aligned = layers.align_in_24_ways(
+            comparison, first, phase["layer 2, alignment"], self._steady, self._keep("panorama")
+        )
+        self._finished.add("panorama")
+
+        second = layers.climb_surface(
+            comparison, aligned, original_scale, phase["layer 2"], self._steady, self._keep("surface")
+        )
+        self._finished.add("surface")
+
+        third = layers.climb_zbuffer(
+            comparison,
+            second,
+            original_scale,
+            phase["layer 3 after layer 2"],
+            self._steady,
+            self._keep("surface+zbuffer"),
+        )
+        self._finished.add("surface+zbuffer")
+        if second.pose is aligned.pose and np.array_equal(second.values, aligned.values):
+            self._found["zbuffer"] = third
+        else:
+            layers.climb_zbuffer(
+                comparison,
+                aligned,
+                original_scale,
+                phase["layer 3 after layer 1"],
+                self._steady,
+                self._keep("zbuffer"),
+            )
+        self._finished.add("zbuffer")
+        self._steady.report(1.0, "estimated")
+
+    def _build_bank(self, comparison: Comparison, rng: np.random.Generator, progress: Progress) -> PanoramaBank:
+        chunks: list[PanoramaBank] = []
+        settings = self._settings
+        pieces = bank_chunks(
+            self._generator,
+            settings.samples,
+            rng,
+            subdivision_steps=settings.subdivision_steps,
+            progress=progress,
+        )
+        try:
+            for chunk in pieces:
+                chunks.append(chunk)  # noqa: PERF402 - what is there when the generator is cancelled counts
+        except Cancelled:
+            if chunks:
+                self._found["panorama"] = layers.nearest_in_bank(comparison, joined(chunks))
+            raise
+        return joined(chunks)
+
+    def _keep(self, name: StageName) -> Callable[[Candidate], None]:
+        def keep(candidate: Candidate) -> None:
+            self._found[name] = candidate
+
+        return keep
+
+    def _estimation(self) -> Estimation:
+        assert self._comparison is not None
+        comparison = self._comparison
+        stages = tuple(self._stage(name) for name in STAGE_LAYERS if name in self._found)
+        answer = choose(stages, self._settings)
+        parameters = tuple(
+            ParameterEstimate(
+                name=parameter.name,
+                label=parameter.label,
+                unit=parameter.unit,
+                value=float(value),
+                base_value=parameter.base_value,
+                minimum=parameter.minimum,
+                maximum=parameter.maximum,
+            )
+            for parameter, value in zip(self._generator.model.parameters, answer.values, strict=True)
+        )
+        mesh = TriangleMesh(answer.pose.apply(comparison.points(answer.values)), comparison.triangles)
+        return Estimation(
+            layer=answer.layer,
+            values=answer.values,
+            parameters=parameters,
+            pose=answer.pose,
+            distances=answer.distances,
+            stages=stages,
+            mesh=mesh,
+            complete=len(self._finished) == len(STAGE_LAYERS),
+        )
+
+    def _stage(self, name: StageName) -> Stage:
+        assert self._comparison is not None
+        comparison = self._comparison
+        candidate = self._found[name]
+        points = comparison.points(candidate.values)
+        pose: Pose = candidate.pose or comparison.initial_pose(points)
+        return Stage(
+            name=name,
+            values=candidate.values,
+            pose=comparison.to_file.compose(pose),
+            distances=comparison.distances(points, pose),
+            complete=name in self._finished,
+        )
