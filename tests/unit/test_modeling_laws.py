@@ -13,7 +13,7 @@ from shapewright.modeling.subdivision import subdivide
 few = settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 
 
-def topology(recipe: Recipe) -> tuple[dict[int, tuple[int, ...]], dict[int, tuple[int, int]], set[int]]:
+def topology(model: ProceduralModel) -> tuple[dict[int, tuple[int, ...]], dict[int, tuple[int, int]], set[int]]:
     mesh = ControlMesh()
     for operation in model.operations:
         operation.apply(mesh)
