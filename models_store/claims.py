@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
 
-from sqlalchemy import ColumnElement, case, func, literal
+from sqlalchemy import ColumnElement, case, func, literal, select
 from sqlalchemy.orm import Session
 
 from models_store.errors import NotFoundError, StaleClaim
@@ -84,6 +84,18 @@ def renew(session: Session, held: Claim, *, now: datetime, lease: timedelta) -> 
         StaleClaim: the job is no longer ours.
     """
     return _write(session, held, {"lease_expires_at": now + lease}, event=False).cancel_requested
+
+
+def look(session: Session, held: Claim) -> bool:
+    """Whether somebody has asked for the job to be cancelled; writes nothing.
+
+    Raises:
+        StaleClaim: the job is no longer ours.
+    """
+    cancelled = session.scalars(select(JobRow.cancel_requested).where(*_held(held))).one_or_none()
+    if cancelled is None:
+        raise StaleClaim(_stale_message(held))
+    return cancelled
 
 
 def report_progress(
@@ -191,5 +203,9 @@ def _held(held: Claim) -> list[ColumnElement[bool]]:
 def _write(session: Session, held: Claim, values: dict[str, Any], *, event: bool = True) -> JobRow:
     job = update_job(session, _held(held), values, event=event)
     if job is None:
-        raise StaleClaim(f"claim {held.token} on job {held.job_id} is no longer the current one")
+        raise StaleClaim(_stale_message(held))
     return job
+
+
+def _stale_message(held: Claim) -> str:
+    return f"claim {held.token} on job {held.job_id} is no longer the current one"

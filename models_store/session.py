@@ -39,7 +39,15 @@ def make_engine(settings: StoreSettings, *, pooled: bool = True) -> Engine:
         engine = create_engine(url, connect_args={"timeout": SQLITE_BUSY_TIMEOUT_S}, **options)
         _prepare_sqlite(engine)
         return engine
-    connect_args = {"connect_timeout": POSTGRES_CONNECT_TIMEOUT_S, "application_name": "shapewright"}
+    connect_args = {
+        "application_name": "shapewright",
+        "connect_timeout": POSTGRES_CONNECT_TIMEOUT_S,
+        # a server that vanished without a word is noticed in seconds, not hours
+        "keepalives_idle": 10,
+        "keepalives_interval": 5,
+        "keepalives_count": 3,
+        "tcp_user_timeout": 20_000,
+    }
     return create_engine(url, pool_pre_ping=pooled, connect_args=connect_args, **options)
 
 

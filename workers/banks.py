@@ -1,0 +1,88 @@
+"""The panorama bank of a model is the same for every query, so it is built once and kept as an artefact."""
+
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import structlog
+
+from models_store.errors import ArtifactError, ArtifactNotFoundError
+from shapewright.errors import Cancelled, EstimationError
+from shapewright.progress import Progress
+from workers.context import JobContext
+
+if TYPE_CHECKING:
+    from shapewright.estimation import EstimationSettings, PanoramaBank
+    from shapewright.modeling import CompiledModel
+
+log = structlog.get_logger(__name__)
+
+
+class BankCancelled(Cancelled):
+    """The building was cancelled. ``bank`` holds the samples that were ready, ``None`` if there are none."""
+
+    def __init__(self, bank: "PanoramaBank | None") -> None:
+        super().__init__()
+        self.bank = bank
+
+
+def stored_bank(
+    context: JobContext, compiled: "CompiledModel", settings: "EstimationSettings"
+) -> "PanoramaBank | None":
+    """The bank that an estimation with these settings wants, mapped into memory; ``None`` if not there yet."""
+    from shapewright.estimation import PanoramaBank
+
+    key = bank_key(compiled, settings)
+    try:
+        bank = PanoramaBank.load(context.artifacts.local_copy(key, context.settings.data_dir / "cache"))
+        bank.check_fits(compiled, settings.subdivision_steps)
+    except ArtifactNotFoundError:
+        return None
+    except (EstimationError, ArtifactError, OSError) as error:
+        log.warning("stored bank is of no use, a new one is built", key=key, error=str(error))
+        return None
+    return bank
+
+
+def new_bank(
+    context: JobContext, compiled: "CompiledModel", settings: "EstimationSettings", progress: Progress
+) -> "PanoramaBank":
+    """Build the bank, and keep it for the next query if there is room for it.
+
+    Raises:
+        BankCancelled: the progress cancelled.
+    """
+    from shapewright.estimation.bank import bank_chunks, joined
+
+    rng, _ = np.random.default_rng(settings.seed).spawn(2)  # as the estimator does without a bank
+    chunks: list[PanoramaBank] = []
+    pieces = bank_chunks(
+        compiled, settings.samples, rng, subdivision_steps=settings.subdivision_steps, progress=progress
+    )
+    try:
+        for chunk in pieces:
+            chunks.append(chunk)  # noqa: PERF402 - what is there when the generator is cancelled counts
+    except Cancelled:
+        raise BankCancelled(joined(chunks) if chunks else None) from None
+    bank = joined(chunks)
+    _keep(context, bank_key(compiled, settings), bank)
+    return bank
+
+
+def bank_key(compiled: "CompiledModel", settings: "EstimationSettings") -> str:
+    """The artefact key of a bank: everything that its content depends on."""
+    from shapewright.estimation.bank import VERSION
+
+    name = f"samples{settings.samples}-seed{settings.seed}-steps{settings.subdivision_steps}-v{VERSION}.npz"
+    return f"banks/{compiled.model.digest}/{name}"
+
+
+def _keep(context: JobContext, key: str, bank: "PanoramaBank") -> None:
+    try:
+        with tempfile.TemporaryDirectory(prefix="shapewright-bank-") as folder:
+            path = Path(folder) / "bank.npz"
+            bank.save(path)
+            context.artifacts.put(key, path.read_bytes())
+    except (ArtifactError, OSError) as error:  # the estimation itself needs no room
+        log.warning("bank could not be kept", key=key, error=str(error))

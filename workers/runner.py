@@ -1,0 +1,158 @@
+"""Carry out one job: claim it, run its task, end it. Whatever is delivered, nothing is done twice."""
+
+import os
+import socket
+import time
+from collections.abc import Callable
+from datetime import datetime, timedelta
+from typing import Final
+
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session
+
+from models_store import claims
+from models_store.artifacts import ArtifactStore
+from models_store.claims import Claim, JobError
+from models_store.errors import ArtifactError, StaleClaim
+from models_store.session import Database
+from shapewright.errors import Cancelled, ShapewrightError
+from workers.context import JobContext, Outcome, WorkerProgress, utc_now
+from workers.settings import WorkerSettings
+from workers.stopping import StopNotice, WorkerStopping
+from workers.tasks import TASKS
+
+log = structlog.get_logger(__name__)
+
+UNEXPECTED: Final = JobError(
+    "Unexpected error", "something broke inside the worker; its log tells more under the id of this job"
+)
+_RETRY_S: Final = 0.5
+
+
+class Runner:
+    """Carries out jobs in one process."""
+
+    def __init__(
+        self,
+        settings: WorkerSettings,
+        stop_notice: StopNotice,
+        *,
+        database: Database | None = None,
+        artifacts: ArtifactStore | None = None,
+        clock: Callable[[], datetime] = utc_now,
+    ) -> None:
+        """Open what the settings name, unless it is given."""
+        self._settings = settings
+        self._stop_notice = stop_notice
+        self._database = database or Database.connect(settings)
+        self._artifacts = artifacts or ArtifactStore.open(settings.artifacts_url)
+        self._clock = clock
+        self._worker = f"{socket.gethostname()}:{os.getpid()}"
+
+    def run(self, job_id: str) -> None:
+        """Carry out the job if it is queued; a doubled, late or unknown delivery does nothing."""
+        with structlog.contextvars.bound_contextvars(job_id=job_id):
+            if self._stop_notice.is_due:
+                return  # it stays queued for another worker
+            try:
+                held = self._claim(job_id)
+            except SQLAlchemyError as error:
+                log.warning("database away, job stays queued", error=str(error))
+                return
+            if held is None:
+                log.info("nothing to do for this delivery")
+                return
+            with structlog.contextvars.bound_contextvars(kind=held.kind.value, attempt=held.attempt):
+                self._work(held)
+
+    def close(self) -> None:
+        """Close the database connections."""
+        self._database.close()
+
+    def _claim(self, job_id: str) -> Claim | None:
+        lease = timedelta(seconds=self._settings.lease_s)
+        with self._database.writing() as session:
+            return claims.claim(session, job_id, now=self._clock(), lease=lease, worker=self._worker)
+
+    def _work(self, held: Claim) -> None:
+        log.info("job started")
+        started = time.perf_counter()
+        outcome: Outcome | None = None
+        kept = False
+        try:
+            with WorkerProgress(self._database, held, self._settings, self._stop_notice, self._clock) as progress:
+                context = JobContext(held, self._database, self._artifacts, self._settings, progress)
+                end, outcome = self._carry_out(context)
+                self._write(end)
+                kept = True
+        except StaleClaim:
+            log.warning("the job belongs to somebody else now, nothing was written")
+        except SQLAlchemyError as error:
+            log.warning("the end of the job could not be written, it will be tried again", error=str(error))
+        finally:
+            if outcome is not None and not kept:
+                self._remove(outcome.artifacts)
+        log.info("job left", seconds=round(time.perf_counter() - started, 3))
+
+    def _carry_out(self, context: JobContext) -> tuple[Callable[[Session], None], Outcome | None]:
+        """Run the task. Returns what is to be written at its end, and its outcome if it has one."""
+        held = context.claim
+        try:
+            outcome = TASKS[held.kind](context)
+        except (StaleClaim, SQLAlchemyError):
+            raise
+        except WorkerStopping:
+            log.info("worker stops, job goes back to the queue")
+            return lambda session: claims.release(session, held, now=self._clock()), None
+        except Cancelled:
+            log.info("job cancelled")
+            return lambda session: claims.finish_cancelled(session, held, now=self._clock()), None
+        except ShapewrightError as error:
+            log.info("job failed", error=str(error))
+            reason = JobError(_title(error), error.message, error.where)
+            return lambda session: claims.fail(session, held, reason, now=self._clock()), None
+        except Exception:
+            log.exception("job broke")
+            if held.attempt >= held.max_attempts:
+                return lambda session: claims.fail(session, held, UNEXPECTED, now=self._clock()), None
+            delay = timedelta(seconds=self._settings.retry_delay_s)
+            return (
+                lambda session: claims.release(session, held, now=self._clock(), delay=delay, counted=True),
+                None,
+            )
+
+        def end(session: Session) -> None:
+            finish = claims.finish_cancelled if outcome.cancelled else claims.finish
+            finish(session, held, now=self._clock())
+            outcome.record(session)
+
+        return end, outcome
+
+    def _write(self, end: Callable[[Session], None]) -> None:
+        """Write the end of the job, patiently: the work of an hour must not be lost with a short outage."""
+        give_up_at = time.monotonic() + self._settings.result_patience_s
+        while True:
+            try:
+                with self._database.writing() as session:
+                    end(session)
+                return
+            except SQLAlchemyError as error:
+                if time.monotonic() >= give_up_at:
+                    raise
+                log.warning("database away, result waits", error=str(error))
+                time.sleep(_RETRY_S)
+
+    def _remove(self, keys: tuple[str, ...]) -> None:
+        for key in keys:
+            try:
+                self._artifacts.delete(key)
+            except ArtifactError as error:
+                log.warning("artefact of a lost claim stays behind", key=key, error=str(error))
+
+
+def _title(error: ShapewrightError) -> str:
+    """``MeshFileError`` is for programmers; people read ``Mesh file error``."""
+    name = type(error).__name__.removesuffix("Error")
+    words = "".join(f" {letter.lower()}" if letter.isupper() else letter for letter in name).strip()
+    return f"{words.capitalize()} error"

@@ -1,0 +1,18 @@
+"""The work itself, one file a kind of job. A task takes a context and returns its outcome."""
+
+from collections.abc import Callable, Mapping
+from typing import Final
+
+from models_store.job_kinds import JobKind
+from workers.context import JobContext, Outcome
+from workers.tasks.classify import classify
+from workers.tasks.estimate import estimate
+from workers.tasks.render_thumbnail import render_thumbnail
+from workers.tasks.train_classifier import train_classifier
+
+TASKS: Final[Mapping[JobKind, Callable[[JobContext], Outcome]]] = {
+    JobKind.TRAIN_CLASSIFIER: train_classifier,
+    JobKind.CLASSIFY: classify,
+    JobKind.ESTIMATE: estimate,
+    JobKind.RENDER_THUMBNAIL: render_thumbnail,
+}
