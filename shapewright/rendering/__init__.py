@@ -1,13 +1,33 @@
 """Images of meshes with ModernGL on EGL; the only package that imports moderngl.
 
-Importing it opens nothing: the context of a process is made when something is drawn first.
+Names are loaded when first used, and the context of a process is made when something is drawn first.
 """
 
-from shapewright.rendering.context import context_is_open, renderer_name, shared_context
-from shapewright.rendering.images import STYLES, ImageStyle, render_images
-from shapewright.rendering.pictures import compose_side_by_side, render_mesh
-from shapewright.rendering.renderer import WINDOW
-from shapewright.rendering.views import SCALE_RANGE, even_views, random_views, three_quarter_view
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from shapewright.rendering.context import context_is_open, renderer_name, shared_context
+    from shapewright.rendering.images import render_images
+    from shapewright.rendering.pictures import compose_side_by_side, render_mesh
+    from shapewright.rendering.styles import SCALE_RANGE, STYLES, WINDOW, ImageStyle
+    from shapewright.rendering.views import even_views, random_views, three_quarter_view
+
+_HOMES = {
+    "SCALE_RANGE": "styles",
+    "STYLES": "styles",
+    "WINDOW": "styles",
+    "ImageStyle": "styles",
+    "compose_side_by_side": "pictures",
+    "context_is_open": "context",
+    "even_views": "views",
+    "random_views": "views",
+    "render_images": "images",
+    "render_mesh": "pictures",
+    "renderer_name": "context",
+    "shared_context": "context",
+    "three_quarter_view": "views",
+}
 
 __all__ = [
     "SCALE_RANGE",
@@ -24,3 +44,13 @@ __all__ = [
     "shared_context",
     "three_quarter_view",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

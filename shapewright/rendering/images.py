@@ -1,7 +1,7 @@
 """Pictures of many objects at once, for classifiers to learn from (paper section 3.2)."""
 
 from collections.abc import Iterator, Sequence
-from typing import Literal, get_args
+from typing import get_args
 
 import numpy as np
 from jaxtyping import Float, Int, UInt8
@@ -9,27 +9,11 @@ from jaxtyping import Float, Int, UInt8
 from shapewright.errors import RenderingError
 from shapewright.mesh import TriangleMesh
 from shapewright.rendering.context import shared_context
-from shapewright.rendering.renderer import WINDOW, Scene, Style, indirect_commands, renderer_for
-
-ImageStyle = Literal["edges", "shaded"]
-"""``edges``: grey fill with dark silhouettes, creases and steps, what classes are learned in.
-``shaded``: lit, for people."""
-
-STYLES: dict[str, Style] = {
-    "edges": Style("edges", oversampling=2),
-    "shaded": Style(
-        "shaded",
-        oversampling=2,
-        line_strength=0.30,
-        background=(0.972, 0.976, 0.984),
-        colors=((0.66, 0.74, 0.84), (0.16, 0.44, 0.80), (0.95, 0.55, 0.14)),
-    ),
-}
+from shapewright.rendering.renderer import Scene, indirect_commands, renderer_for
+from shapewright.rendering.styles import STYLES, WINDOW, ImageStyle
 
 MAX_BATCH_VERTICES = 4_000_000
 """Vertices that one batch uploads at most, a single larger object apart."""
-
-Meshes = Float[np.ndarray, "M V 3"] | Sequence[TriangleMesh]
 
 
 def render_images(

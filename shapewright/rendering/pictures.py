@@ -9,9 +9,9 @@ from jaxtyping import Float, UInt8
 from shapewright.errors import RenderingError
 from shapewright.mesh import TriangleMesh
 from shapewright.rendering.context import shared_context
-from shapewright.rendering.images import STYLES, ImageStyle
-from shapewright.rendering.renderer import WINDOW, Scene, Style, indirect_commands, renderer_for
+from shapewright.rendering.renderer import Scene, indirect_commands, renderer_for
 from shapewright.rendering.smoothing import corner_normals
+from shapewright.rendering.styles import STYLES, WINDOW, ImageStyle, Style
 from shapewright.rendering.views import three_quarter_view
 
 FILL = 0.90

@@ -10,33 +10,14 @@ import moderngl
 import numpy as np
 from jaxtyping import Float, Float32, Int, UInt8
 
+from shapewright.rendering.styles import WINDOW, Style
+
 SAMPLE_BYTES = 12
 """Half floats of the surface (8) and depth (4) that one sample of the atlas takes."""
 MAX_ATLAS_BYTES = 96 * 2**20
 """Bound of the atlas' memory; larger batches are drawn piece by piece."""
-WINDOW = 2.0
-"""Half the side of a picture, in units of the scaled object (whose coordinates lie within ±1 at scale 1)."""
 STEP_HEIGHT = 0.05
 """A jump in depth of this size, in the same units, is drawn as an edge."""
-
-
-@dataclass(frozen=True)
-class Style:
-    """How the surface becomes a picture.
-
-    Args:
-        shader: name of the fragment shader without its ending.
-        oversampling: samples along each side of a pixel; even.
-        line_strength: darkness of lines, for shaders that let one choose.
-        background: red, green, blue in 0..1, for the same shaders.
-        colors: of colour numbers 1 to 3.
-    """
-
-    shader: str
-    oversampling: int = 2
-    line_strength: float = 0.0
-    background: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    colors: tuple[tuple[float, float, float], ...] = ((0.6, 0.6, 0.6),) * 3
 
 
 @dataclass(frozen=True, eq=False)

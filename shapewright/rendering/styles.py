@@ -1,0 +1,44 @@
+"""Looks of pictures and the numbers that frame them; plain values, no OpenGL."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+SCALE_RANGE = (0.8, 2.0)
+"""Scales of the learning images (paper section 3.2)."""
+WINDOW = 2.0
+"""Half the side of a picture, in units of the scaled object (whose coordinates lie within ±1 at scale 1)."""
+
+ImageStyle = Literal["edges", "shaded"]
+"""``edges``: grey fill with dark silhouettes, creases and steps, what classes are learned in.
+``shaded``: lit, for people."""
+
+
+@dataclass(frozen=True)
+class Style:
+    """How the surface becomes a picture.
+
+    Args:
+        shader: name of the fragment shader without its ending.
+        oversampling: samples along each side of a pixel; even.
+        line_strength: darkness of lines, for shaders that let one choose.
+        background: red, green, blue in 0..1, for the same shaders.
+        colors: of colour numbers 1 to 3.
+    """
+
+    shader: str
+    oversampling: int = 2
+    line_strength: float = 0.0
+    background: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    colors: tuple[tuple[float, float, float], ...] = ((0.6, 0.6, 0.6),) * 3
+
+
+STYLES: dict[str, Style] = {
+    "edges": Style("edges", oversampling=2),
+    "shaded": Style(
+        "shaded",
+        oversampling=2,
+        line_strength=0.30,
+        background=(0.972, 0.976, 0.984),
+        colors=((0.66, 0.74, 0.84), (0.16, 0.44, 0.80), (0.95, 0.55, 0.14)),
+    ),
+}
