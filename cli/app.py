@@ -54,8 +54,8 @@ def _refuse(message: str, *, status: int = 2) -> NoReturn:
 
 
 def _help_hint(error: typer.TyperException) -> str:
-    context = getattr(error, "ctx", None)
-    return f" ({context.command_path} --help tells more)" if isinstance(context, typer.Context) else ""
+    path = getattr(getattr(error, "ctx", None), "command_path", None)
+    return f" ({path} --help tells more)" if path else ""
 
 
 app = typer.Typer(

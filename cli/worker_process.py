@@ -32,6 +32,7 @@ class WorkerProcess:
         command: its command line.
         environment: its environment.
         say: told in a sentence when the worker died, is started again, or is given up.
+        pause_s: before it is started again the first time; doubled at each quick death.
         grace_s: how long a stopping worker may finish what it does; a job that is cut off is not lost, its lease
             runs out and the next worker takes it.
     """
@@ -39,6 +40,7 @@ class WorkerProcess:
     command: list[str]
     environment: Mapping[str, str]
     say: Callable[[str], None]
+    pause_s: float = 1.0
     grace_s: float = 5.0
     process: "subprocess.Popen[bytes] | None" = field(default=None, init=False)
     _stopping: threading.Event = field(default_factory=threading.Event, init=False)
@@ -102,7 +104,7 @@ class WorkerProcess:
                     "again; the service goes on, jobs stay queued"
                 )
                 return
-            pause_s = min(2.0 ** (quick_deaths - 1), LONGEST_PAUSE_S)
+            pause_s = min(self.pause_s * 2.0 ** (quick_deaths - 1), LONGEST_PAUSE_S)
             self.say(f"the worker died (status {process.returncode}); started again in {pause_s:g} s")
             if self._stopping.wait(pause_s):
                 return

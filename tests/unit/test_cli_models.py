@@ -1,0 +1,62 @@
+"""`shapewright models` tells what there is and what is wrong."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from command_line import shapewright, write_lamp_model
+
+if TYPE_CHECKING:
+    from shapewright.modeling import ProceduralModel
+
+
+@pytest.fixture
+def lamp(tmp_path: Path) -> Path:
+    return write_lamp_model(tmp_path)
+
+
+def test_list_names_the_shipped_models(library_models: "dict[str, ProceduralModel]") -> None:
+    listed = shapewright("models", "list", "--json").document["models"]
+    assert {item["name"]: item["digest"] for item in listed} == {m.name: m.digest for m in library_models.values()}
+    table = shapewright("models", "list").stdout
+    assert all(name in table for name in library_models)
+
+
+def test_show_tells_ranges_and_units(lamp: Path) -> None:
+    document = shapewright("models", "show", lamp, "--json").document
+    assert document["name"] == "lamp"
+    assert document["parameters"][0] == {
+        "name": "post_length", "label": "length of the post", "unit": "mm", "base_value": 100.0,
+        "minimum": 0.5, "maximum": 2.0,
+    }  # fmt: skip
+    text = shapewright("models", "show", lamp).stdout
+    assert "0.5 … 2" in text
+    assert "100 mm" in text
+
+
+def test_validate_accepts_a_good_model(lamp: Path) -> None:
+    assert "valid (2 parameters)" in shapewright("models", "validate", lamp).stdout
+
+
+def test_validate_says_what_is_wrong_and_where(lamp: Path, tmp_path: Path) -> None:
+    document = json.loads(lamp.read_text())
+    document["parameters"][0]["range"] = [1.5, 2.0]
+    excludes_one = tmp_path / "excludes-one.json"
+    excludes_one.write_text(json.dumps(document))
+    broken = tmp_path / "broken.json"
+    broken.write_text('{"format": ')
+    outcome = shapewright("models", "validate", lamp, excludes_one, broken, "--json")
+    assert outcome.status == 2
+    good, bad, no_json = outcome.document["files"]
+    assert good["valid"]
+    assert not bad["valid"]
+    assert "parameters[0]" in bad["where"]
+    assert not no_json["valid"]
+    told = shapewright("models", "validate", excludes_one)
+    assert told.status == 2
+    assert len(told.stderr.strip().splitlines()) == 1
+
+
+def test_an_unknown_model_lists_those_that_ship() -> None:
+    assert "neither a file nor a shipped model" in shapewright("models", "show", "teapot").refused()
