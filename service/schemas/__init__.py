@@ -1,0 +1,1 @@
+"""Bodies of requests (``In``) and responses (``Out``), one file a resource."""

@@ -1,0 +1,70 @@
+"""What a mesh is."""
+
+from typing import Annotated, Self
+
+from pydantic import Field
+
+from models_store.job_kinds import JobState
+from models_store.tables import ClassificationRow
+from service.schemas.common import Identifier, InBody, Moment, OutBody, PageOut, Seed
+
+
+class ClassificationIn(InBody):
+    """A mesh to classify."""
+
+    mesh_id: Identifier
+    classifier_id: Identifier | None = Field(default=None, description="null: the newest that succeeded.")
+    views: Annotated[int, Field(ge=1, le=200)] = Field(default=10, description="Images to average over.")
+    seed: Seed = 0
+
+
+class ClassProbabilityOut(OutBody):
+    """The probability of one class."""
+
+    class_name: str
+    probability: float
+
+
+class ClassificationResultOut(OutBody):
+    """The answer."""
+
+    class_name: str
+    probabilities: list[ClassProbabilityOut] = Field(description="Most probable class first.")
+    per_view: list[list[float]] = Field(
+        description="A row a view; columns in the order of the classifier's `class_names`."
+    )
+    seconds: float
+
+
+class ClassificationOut(OutBody):
+    """A classification, asked for or done."""
+
+    id: str
+    state: JobState
+    mesh_id: str
+    classifier_id: str
+    views: int
+    seed: int
+    result: ClassificationResultOut | None
+    job_id: str
+    created_at: Moment
+
+    @classmethod
+    def from_row(cls, row: ClassificationRow) -> Self:
+        """Write down a row."""
+        result = None if row.result is None else ClassificationResultOut.model_validate(row.result)
+        return cls(
+            id=row.id,
+            state=row.job.state,
+            mesh_id=row.mesh_id,
+            classifier_id=row.classifier_id,
+            views=row.settings["views"],
+            seed=row.settings["seed"],
+            result=result,
+            job_id=row.job_id,
+            created_at=row.created_at,
+        )
+
+
+class ClassificationPageOut(PageOut[ClassificationOut]):
+    """A page of classifications."""

@@ -1,0 +1,119 @@
+"""Which parameter values rebuild a mesh."""
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field
+
+from models_store.job_kinds import JobState
+from models_store.tables import EstimationRow
+from service.schemas.common import Identifier, InBody, Moment, OutBody, PageOut, Seed
+from service.schemas.meshes import Coordinates
+
+
+class EstimationSettingsIn(InBody):
+    """Settings of an estimation; what is left out keeps the library's default (paper section 3.3)."""
+
+    samples: Annotated[int, Field(ge=1, le=1_000_000)] | None = Field(
+        default=None, description="Random instances of layer 1."
+    )
+    surface_points: Annotated[int, Field(ge=100, le=100_000)] | None = Field(
+        default=None, description="Poisson-disk points on the query."
+    )
+    image_size: Annotated[int, Field(ge=16, le=1024)] | None = Field(
+        default=None, description="Pixels of a depth view's side."
+    )
+    surface_threshold: Annotated[float, Field(gt=0)] | None = None
+    zbuffer_threshold: Annotated[float, Field(gt=0)] | None = None
+    seed: Seed | None = None
+
+
+class EstimationIn(InBody):
+    """A mesh to rebuild with a model."""
+
+    mesh_id: Identifier
+    model_id: Identifier
+    settings: EstimationSettingsIn = Field(default_factory=EstimationSettingsIn)
+
+
+class ParameterEstimateOut(OutBody):
+    """A parameter's estimate; `value` is x, shown as `x * base_value`."""
+
+    name: str
+    label: str
+    unit: str | None
+    value: float
+    base_value: float | None
+    minimum: float
+    maximum: float
+
+
+class DistancesOut(OutBody):
+    """How far query and fitted mesh are apart; null where a stage did not measure it."""
+
+    panorama: float | None
+    surface: float | None
+    zbuffer: float | None
+    zbuffer_raw: float | None
+
+
+class PoseOut(OutBody):
+    """From the model's space to the query's own coordinates: `scale * rotation @ point + translation`."""
+
+    rotation: Annotated[list[Coordinates], Field(min_length=3, max_length=3)]
+    translation: Coordinates
+    scale: float
+
+
+class StageOut(OutBody):
+    """What one stage of the estimation found."""
+
+    name: str
+    values: list[float] = Field(description="x in the order of the model's parameters.")
+    pose: PoseOut
+    distances: DistancesOut
+
+
+class EstimationResultOut(OutBody):
+    """The answer."""
+
+    layer: Literal[1, 2, 3]
+    complete: bool = Field(description="False if it was cancelled: the best so far.")
+    parameters: list[ParameterEstimateOut]
+    distances: DistancesOut
+    stages: list[StageOut]
+    pose: PoseOut
+    seconds: float
+
+
+class EstimationOut(OutBody):
+    """An estimation, asked for or done."""
+
+    id: str
+    state: JobState
+    mesh_id: str
+    model_id: str
+    settings: dict[str, Any]
+    result: EstimationResultOut | None
+    mesh_url: str | None = Field(description="The fitted mesh as GLB, in the query's coordinates.")
+    job_id: str
+    created_at: Moment
+
+    @classmethod
+    def from_row(cls, row: EstimationRow) -> Self:
+        """Write down a row."""
+        result = None if row.result is None else EstimationResultOut.model_validate(row.result)
+        return cls(
+            id=row.id,
+            state=row.job.state,
+            mesh_id=row.mesh_id,
+            model_id=row.model_id,
+            settings=row.settings,
+            result=result,
+            mesh_url=f"/v1/estimations/{row.id}/mesh" if row.mesh_key else None,
+            job_id=row.job_id,
+            created_at=row.created_at,
+        )
+
+
+class EstimationPageOut(PageOut[EstimationOut]):
+    """A page of estimations."""
