@@ -7,14 +7,14 @@ Polygon soup is normal here: nothing asks for a closed, oriented or manifold mes
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from shapewright.errors import MeshError
 
-MeshFileType = Literal["glb", "obj", "off", "ply", "stl"]
+WRITABLE_TYPES = ("glb", "obj", "off", "ply", "stl")
 """The file types a mesh can be written as."""
 
 
@@ -176,14 +176,14 @@ class TriangleMesh:
 
         return trimesh.Trimesh(self.vertices.copy(), self.faces.copy(), process=False)
 
-    def to_bytes(self, file_type: MeshFileType) -> bytes:
+    def to_bytes(self, file_type: str) -> bytes:
         """The mesh as the bytes of a file; OBJ and OFF give every float64 back, the others keep float32.
 
         Raises:
             MeshError: the type is none of glb, obj, off, ply, stl.
         """
-        if file_type not in get_args(MeshFileType):
-            raise MeshError(f"cannot write {file_type!r}; known: {', '.join(get_args(MeshFileType))}")
+        if file_type not in WRITABLE_TYPES:
+            raise MeshError(f"cannot write {file_type!r}; known: {', '.join(WRITABLE_TYPES)}")
         if file_type == "obj":
             return self._text("v %.17g %.17g %.17g", "f %d %d %d", first_index=1)
         if file_type == "off":
@@ -203,7 +203,7 @@ class TriangleMesh:
             MeshError: the ending is none of .glb .obj .off .ply .stl.
             OSError: the file cannot be written.
         """
-        data = self.to_bytes(Path(path).suffix.lower().lstrip("."))  # type: ignore[arg-type]
+        data = self.to_bytes(Path(path).suffix.lower().lstrip("."))
         Path(path).write_bytes(data)
 
 

@@ -87,7 +87,5 @@ def _through_trimesh(data: bytes, file_type: str) -> Arrays:
         raise
     except Exception as error:  # whatever a parser meets in a stranger's bytes
         reason = str(error) or type(error).__name__
-        raise MeshFileError(
-            f"damaged or truncated: {reason[:200]}", where=f"{file_type.upper()} content"
-        ) from error
+        raise MeshFileError(f"damaged or truncated: {reason[:200]}", where=f"{file_type.upper()} content") from error
     return np.array(mesh.vertices, dtype=np.float64), np.array(mesh.faces, dtype=np.int64).reshape(-1, 3)

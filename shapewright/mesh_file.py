@@ -9,6 +9,7 @@ between two faces reads as a smaller mesh.
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -106,15 +107,15 @@ def _run_child(request: bytes, limits: ReadLimits) -> bytes:
         try:
             output, _ = child.communicate(request, timeout=limits.wall_s)
         except subprocess.TimeoutExpired:
-            raise MeshFileError(
-                f"reading took more than {limits.wall_s:g} s", where="reader process"
-            ) from None
+            raise MeshFileError(f"reading took more than {limits.wall_s:g} s", where="reader process") from None
         finally:
             child.kill()
+    if child.returncode == -signal.SIGXCPU:
+        raise MeshFileError(f"reading took more than {limits.cpu_s} s of processor time", where="reader process")
     if child.returncode != 0:
-        if child.returncode < 0:
-            why = f"used more than {limits.cpu_s} s of processor time, or was stopped from outside"
-        else:
-            why = f"ended with status {child.returncode}"
-        raise MeshFileError(f"the reader {why}", where="reader process")
+        raise MeshFileError(
+            f"the reader broke off with status {child.returncode}; {limits.memory_bytes} bytes of memory may not"
+            " be enough",
+            where="reader process",
+        )
     return output

@@ -15,7 +15,7 @@ def main() -> None:
     request = json.loads(sys.stdin.buffer.readline())
     file_type, limits = request["file_type"], request["limits"]
     _limit(resource.RLIMIT_AS, limits["memory_bytes"])
-    _limit(resource.RLIMIT_CPU, limits["cpu_s"])
+    _limit(resource.RLIMIT_CPU, limits["cpu_s"], spare=1)  # a second between the signal and the kill
     _limit(resource.RLIMIT_CORE, 0)
     _limit(resource.RLIMIT_FSIZE, 0)
     try:
@@ -55,12 +55,12 @@ def _load_trimesh() -> None:
         importlib.import_module(name)
 
 
-def _limit(kind: int, value: float) -> None:
-    _, hard = resource.getrlimit(kind)
-    value = int(value)
-    if hard != resource.RLIM_INFINITY:
-        value = min(value, hard)
-    resource.setrlimit(kind, (value, value))
+def _limit(kind: int, value: float, spare: int = 0) -> None:
+    _, most = resource.getrlimit(kind)
+    hard = int(value) + spare
+    if most != resource.RLIM_INFINITY:
+        hard = min(hard, most)
+    resource.setrlimit(kind, (min(int(value), hard), hard))
 
 
 if __name__ == "__main__":

@@ -106,9 +106,7 @@ def _check_ply_lines(data: bytes) -> None:
     stated = sum(int(count[:12]) for count in re.findall(rb"^element\s+\S+\s+(\d+)", header, re.MULTILINE))
     there = sum(1 for line in body.splitlines() if line.strip())
     if there < stated:
-        raise MeshFileError(
-            f"truncated: {stated} lines of elements stated, {there} there", where="PLY content"
-        )
+        raise MeshFileError(f"truncated: {stated} lines of elements stated, {there} there", where="PLY content")
 
 
 def _glb_document(data: bytes) -> bytes:

@@ -93,11 +93,7 @@ def read_stl(data: bytes) -> Arrays:
         if b"endsolid" not in lowered[lowered.rfind(b"facet") :]:
             raise MeshFileError("truncated: no endsolid after the last facet", where=f"byte {len(data)}")
         words = _STL_VERTEX.findall(data)
-        if (
-            len(words) != lowered.count(b"vertex")
-            or len(words) % 3
-            or len(words) != 3 * lowered.count(b"endfacet")
-        ):
+        if len(words) != lowered.count(b"vertex") or len(words) % 3 or len(words) != 3 * lowered.count(b"endfacet"):
             raise MeshFileError("damaged: not every facet has three vertices of three numbers", where="solid")
         vertices = np.array([_numbers(triple, None) for triple in words], dtype=np.float64).reshape(-1, 3)
     return vertices, np.arange(len(vertices), dtype=np.int64).reshape(-1, 3)
@@ -154,9 +150,7 @@ def _check_indices(faces: list[tuple[int, int, int]], count: int) -> None:
     # vertices may come after the faces that use them, so this has to wait for the end
     largest = max((max(face) for face in faces), default=-1)
     if largest >= count:
-        raise MeshFileError(
-            f"a face uses vertex {largest + 1} of {count}; is the file truncated?", where="faces"
-        )
+        raise MeshFileError(f"a face uses vertex {largest + 1} of {count}; is the file truncated?", where="faces")
 
 
 def _fan(corners: list[int]) -> list[tuple[int, int, int]]:

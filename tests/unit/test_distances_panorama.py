@@ -1,3 +1,5 @@
+import csv
+
 import numpy as np
 import pytest
 import pywt
@@ -16,6 +18,7 @@ from shapewright.distances.panorama import (
     panorama_distances,
 )
 from shapewright.errors import MeshError
+from shapewright.mesh_file import load_mesh
 
 ROTATION_TOLERANCE = 1e-3
 """What a rotation may change, in a distance that lies in [0, 2] and is 0.3 and more between kinds of objects."""
@@ -211,3 +214,20 @@ def test_refusals():
         panorama_descriptors(np.concatenate([vertices, vertices * 0]), triangles)
     with pytest.raises(MeshError, match="bank"):
         panorama_distances(panorama_descriptor(vertices[0], triangles), np.zeros((2, 7), dtype=np.float32))
+
+
+@pytest.mark.real_data
+def test_real_objects_are_nearest_to_their_own_class(real_data):
+    with (real_data / "labels.csv").open() as file:
+        rows = [row for row in csv.DictReader(file) if int(row["faces"]) < 20_000]
+    banks = {}
+    for name in ("sword", "table", "glass_with_stem", "bicycle"):
+        files = [real_data / row["file"] for row in rows if row["class"] == name][:8]
+        meshes = [load_mesh(file) for file in files]
+        banks[name] = np.array([panorama_descriptor(m.vertices, m.faces).to_array() for m in meshes])
+    for own, bank in banks.items():
+        medians = {
+            other: np.median([panorama_distances(PanoramaDescriptor(row), banks[other]) for row in bank])
+            for other in banks
+        }
+        assert min(medians, key=medians.get) == own, (own, medians)
