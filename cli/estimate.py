@@ -50,7 +50,8 @@ def estimate(
 
     compiled = load_model(model).compile()
     query = load_mesh(mesh)
-    settings = EstimationSettings(seed=seed, **({} if samples is None else {"samples": samples}))
+    chosen: dict[str, Any] = {} if samples is None else {"samples": samples}
+    settings = EstimationSettings(seed=seed, **chosen)
     started_s = time.monotonic()
     with shown_progress("estimating") as progress:
         estimation = run_estimation(query, compiled, settings, progress=progress)

@@ -1,6 +1,8 @@
 """`shapewright serve`: the service and a worker together, with nothing else to install."""
 
+import contextlib
 import os
+import signal
 import socket
 import sys
 from contextlib import ExitStack
@@ -10,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cli.console import AsJson, print_json
+from cli.worker_process import WorkerProcess, worker_command
 from shapewright.errors import ShapewrightError
 
 if TYPE_CHECKING:
@@ -30,7 +33,10 @@ def serve(
         typer.Option(help="Folder of the database, files and queue (default: ./shapewright-data).", show_default=False),
     ] = None,
     worker: Annotated[bool, typer.Option(help="Start a worker beside the service.")] = True,
-    concurrency: Annotated[int, typer.Option(min=1, max=64, help="Jobs that the worker does at a time.")] = 1,
+    concurrency: Annotated[
+        int | None,
+        typer.Option(min=1, max=64, help="Jobs that the worker does at a time (default: 1).", show_default=False),
+    ] = None,
     log_level: Annotated[str, typer.Option(help="debug, info, warning or error.")] = "warning",
     as_json: AsJson = False,
 ) -> None:
@@ -49,24 +55,40 @@ def serve(
     """
     if log_level.lower() not in ("debug", "info", "warning", "error"):
         raise ServeError("use debug, info, warning or error", where=f"--log-level {log_level}")
-    if data_dir is not None:
-        os.environ["SHAPEWRIGHT_DATA_DIR"] = str(data_dir.resolve())
+    _set_environment(data_dir, concurrency, log_level.upper())
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # both end as KeyboardInterrupt, in order
     with ExitStack() as stack:
         listener = stack.enter_context(_listen(host, port))
+        stack.callback(_ignore_signals)
         server = _make_server(log_level.lower())
         worker_pid = None
-        if worker:
-            from cli.worker_process import WorkerProcess, worker_command
+        with contextlib.suppress(KeyboardInterrupt):
+            if worker:
+                child = WorkerProcess(worker_command(), os.environ, say=_remark)
+                stack.callback(child.stop)
+                stack.callback(_ignore_signals)
+                worker_pid = child.start()
+            shown_host = "127.0.0.1" if host in ("0.0.0.0", "::", "") else host
+            url = f"http://{shown_host}:{listener.getsockname()[1]}"
+            _announce(server, url, worker_pid, as_json)
+            server.run(sockets=[listener])
+            if not server.started:
+                raise ServeError("the service did not start; its messages are above")
 
-            child = WorkerProcess(worker_command(concurrency, log_level.upper()), os.environ, say=_remark)
-            worker_pid = child.start()
-            stack.callback(child.stop)
-        shown_host = "127.0.0.1" if host in ("0.0.0.0", "::", "") else host
-        url = f"http://{shown_host}:{listener.getsockname()[1]}"
-        _announce(server, url, worker_pid, as_json)
-        server.run(sockets=[listener])
-        if not server.started:
-            raise ServeError("the service did not start; its messages are above")
+
+def _set_environment(data_dir: Path | None, concurrency: int | None, log_level: str) -> None:
+    """Service and worker read their settings from the environment; an option goes before a variable."""
+    if data_dir is not None:
+        os.environ["SHAPEWRIGHT_DATA_DIR"] = str(data_dir.resolve())
+    if concurrency is not None:
+        os.environ["SHAPEWRIGHT_WORKER_CONCURRENCY"] = str(concurrency)
+    os.environ["SHAPEWRIGHT_LOG_LEVEL"] = log_level
+
+
+def _ignore_signals() -> None:
+    """While the worker is stopped, an impatient second Ctrl-C shall not leave it behind."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
 
 
 def _listen(host: str, port: int) -> socket.socket:
@@ -85,9 +107,12 @@ def _listen(host: str, port: int) -> socket.socket:
 
 def _make_server(log_level: str) -> "uvicorn.Server":
     import uvicorn
+
     from service.app import create_app
 
-    config = uvicorn.Config(create_app(), log_level=log_level, timeout_graceful_shutdown=SHUTDOWN_S)
+    config = uvicorn.Config(
+        create_app(), log_level=log_level, access_log=False, timeout_graceful_shutdown=SHUTDOWN_S
+    )  # the service writes an access log of its own
     return uvicorn.Server(config)
 
 
@@ -104,14 +129,14 @@ def _announce(server: "uvicorn.Server", url: str, worker_pid: int | None, as_jso
                 {
                     "url": url,
                     "dashboard_url": f"{url}/",
-                    "documentation_url": f"{url}/docs",
+                    "openapi_url": f"{url}/openapi.json",
                     "pid": os.getpid(),
                     "worker_pid": worker_pid,
                 }
             )
         else:
             typer.echo(f"Dashboard      {url}/")
-            typer.echo(f"API reference  {url}/docs")
+            typer.echo(f"REST API       {url}/openapi.json")
             typer.echo("Ctrl-C stops the service and its worker." if worker_pid else "Ctrl-C stops the service.")
         sys.stdout.flush()
 

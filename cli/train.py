@@ -41,7 +41,7 @@ def train(
     by_class: dict[str, list[Any]] = {}
     for model in load_models(models):
         by_class.setdefault(model.class_name, []).append(model.compile())
-    chosen = {"variations": variations, "images_per_variation": images, "epochs": epochs}
+    chosen: dict[str, Any] = {"variations": variations, "images_per_variation": images, "epochs": epochs}
     settings = TrainingSettings(seed=seed, **{name: value for name, value in chosen.items() if value is not None})
     started_s = time.monotonic()
     with shown_progress("training") as progress:

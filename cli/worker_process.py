@@ -18,10 +18,9 @@ GIVE_UP_AFTER = 5
 LONGEST_PAUSE_S = 30.0
 
 
-def worker_command(concurrency: int = 1, log_level: str = "INFO") -> list[str]:
-    """Return the command line of a worker; the one that people type, with this Python."""
-    options = ["--pool=prefork", f"--concurrency={concurrency}", f"--loglevel={log_level}"]
-    return [sys.executable, "-m", "celery", "-A", "workers.app", "worker", *options]
+def worker_command() -> list[str]:
+    """Return the command line of a worker: the one that people type, with this Python and without the banner."""
+    return [sys.executable, "-m", "celery", "--quiet", "-A", "workers.app", "worker"]
 
 
 @dataclass
@@ -33,15 +32,15 @@ class WorkerProcess:
         environment: its environment.
         say: told in a sentence when the worker died, is started again, or is given up.
         pause_s: before it is started again the first time; doubled at each quick death.
-        grace_s: how long a stopping worker may finish what it does; a job that is cut off is not lost, its lease
-            runs out and the next worker takes it.
+        grace_s: how long a stopping worker may take; a little more than its own setting ``shutdown_grace_s``, after
+            which it puts its job back into the queue.
     """
 
     command: list[str]
     environment: Mapping[str, str]
     say: Callable[[str], None]
     pause_s: float = 1.0
-    grace_s: float = 5.0
+    grace_s: float = 10.0
     process: "subprocess.Popen[bytes] | None" = field(default=None, init=False)
     _stopping: threading.Event = field(default_factory=threading.Event, init=False)
     _keeper: threading.Thread | None = field(default=None, init=False)
@@ -61,7 +60,7 @@ class WorkerProcess:
         process = self.process
         if process is None:
             return
-        # TERM: finish what runs; QUIT: drop it and leave; KILL: the whole process group
+        # TERM: put the job back and leave; QUIT: leave; KILL: the whole process group
         for request in (signal.SIGTERM, signal.SIGQUIT):
             if process.poll() is None:
                 process.send_signal(request)

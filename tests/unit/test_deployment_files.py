@@ -61,8 +61,11 @@ def test_the_api_command_names_a_factory(compose: dict[str, Any]) -> None:
     assert callable(getattr(importlib.import_module(module), factory))
 
 
-def test_the_worker_command_is_the_one_of_serve(compose: dict[str, Any]) -> None:
-    assert compose["services"]["worker"]["command"] == worker_command()[2:]
+def test_the_worker_command_names_an_application(compose: dict[str, Any]) -> None:
+    program, option, application, verb = compose["services"]["worker"]["command"]
+    assert (program, option, verb) == ("celery", "-A", "worker")
+    assert application in worker_command(), "`shapewright serve` starts the same one"
+    assert hasattr(importlib.import_module(application), "app")
 
 
 def test_services_wait_for_healthy_ones_only(compose: dict[str, Any]) -> None:
