@@ -1,0 +1,29 @@
+/** Short names for the bodies of the REST API, all taken from the generated schema. */
+import type { components } from "./schema";
+
+type Schemas = components["schemas"];
+
+export type Model = Schemas["ModelOut"];
+export type Parameter = Schemas["ParameterOut"];
+export type Mesh = Schemas["MeshOut"];
+export type Job = Schemas["JobOut"];
+export type JobState = Job["state"];
+export type JobKind = Job["kind"];
+export type Classifier = Schemas["ClassifierOut"];
+export type Classification = Schemas["ClassificationOut"];
+export type Estimation = Schemas["EstimationOut"];
+export type EstimationResult = NonNullable<Estimation["result"]>;
+export type ParameterEstimate = EstimationResult["parameters"][number];
+export type Accepted = Schemas["AcceptedOut"];
+
+export interface Page<Item> {
+  items: Item[];
+  next_cursor?: string | null;
+}
+
+const TERMINAL: ReadonlySet<JobState> = new Set(["succeeded", "failed", "cancelled"]);
+
+/** Whether a job in this state will never change again. */
+export function isTerminal(state: JobState): boolean {
+  return TERMINAL.has(state);
+}

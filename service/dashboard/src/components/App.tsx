@@ -1,0 +1,174 @@
+import { useCallback, useRef, useState } from "react";
+
+import { useModels, useUploadMesh, useUploadModel } from "../api/queries";
+import { useMeshSession } from "../hooks/useMeshSession";
+import { useModelSession } from "../hooks/useModelSession";
+import { navigate, useRoute } from "../hooks/useRoute";
+import { count, humanize } from "../lib/format";
+import { MESH_ACCEPT, isModelDocument } from "../lib/meshFiles";
+import { DropTarget } from "./DropTarget";
+import { Header } from "./Header";
+import { JobList } from "./JobList";
+import { Legend } from "./Legend";
+import { MeshInspector } from "./MeshInspector";
+import { MeshList } from "./MeshList";
+import { ModelInspector } from "./ModelInspector";
+import { ModelList } from "./ModelList";
+import { Problem } from "./Problem";
+import { Stage } from "./Stage";
+
+/** The one page: what there is on the left, a view of it in the middle, what can be done with it on the right. */
+export function App() {
+  const route = useRoute();
+  const models = useModels();
+  const upload = useUploadMesh();
+  const uploadModel = useUploadModel();
+  const picker = useRef<HTMLInputElement>(null);
+  const [uploadError, setUploadError] = useState<{ error: unknown; fileName: string } | null>(null);
+
+  const linkedModel = route.kind === "model" ? route.id : null;
+  // Without anything in the address the first model is shown, so that the page never opens on an empty stage.
+  const model =
+    route.kind === "home"
+      ? (models.data?.[0] ?? null)
+      : (models.data?.find(({ id }) => id === linkedModel) ?? null);
+  const modelMissing = linkedModel !== null && models.isSuccess && model === null;
+  const modelSession = useModelSession(model, route.kind === "model" ? route.values : undefined);
+  const meshSession = useMeshSession(route);
+  const showsMesh = route.kind === "mesh" || route.kind === "estimation";
+
+  const { mutate: sendMesh } = upload;
+  const { mutate: sendModel } = uploadModel;
+  const receive = useCallback(
+    (file: File) => {
+      setUploadError(null);
+      const onError = (error: unknown) => setUploadError({ error, fileName: file.name });
+      if (isModelDocument(file.name)) {
+        sendModel(file, { onError, onSuccess: ({ id }) => navigate({ kind: "model", id }) });
+      } else {
+        sendMesh(file, { onError, onSuccess: ({ id }) => navigate({ kind: "mesh", id }) });
+      }
+    },
+    [sendMesh, sendModel],
+  );
+
+  const stage = showsMesh
+    ? {
+        title: meshSession.mesh?.file_name ?? "Mesh",
+        subtitle: meshSession.legend.length > 0 ? "Query and fitted model, overlaid" : "Query",
+        layers: meshSession.layers,
+        busy: meshSession.busy,
+        error: meshSession.error,
+        legend:
+          meshSession.legend.length > 0 ? <Legend entries={meshSession.legend} onChange={meshSession.adjust} /> : null,
+      }
+    : {
+        title: model ? humanize(model.name) : "Shapewright",
+        ...(model ? { subtitle: count(model.parameters.length, "parameter") } : {}),
+        layers: modelSession.layers,
+        busy: modelSession.busy,
+        error: modelSession.error,
+      };
+
+  return (
+    <div className="page">
+      <a className="skip-link" href="#inspector" onClick={(event) => {
+        event.preventDefault();
+        document.getElementById("inspector")?.focus();
+      }}>
+        Skip to the controls
+      </a>
+      <Header />
+      <aside className="library" aria-label="Library">
+        <ModelList selectedId={showsMesh ? null : (model?.id ?? null)} />
+        <MeshList
+          selectedId={showsMesh ? meshSession.meshId : null}
+          onChoose={() => picker.current?.click()}
+          uploading={upload.isPending ? upload.variables.name : null}
+          uploadError={uploadError}
+          onDismissError={() => setUploadError(null)}
+        />
+        <input
+          ref={picker}
+          type="file"
+          accept={MESH_ACCEPT}
+          hidden
+          data-testid="mesh-file"
+          aria-label="Mesh file"
+          onChange={(event) => {
+            const file = event.target.files?.[0];
+            if (file) receive(file);
+            event.target.value = "";
+          }}
+        />
+      </aside>
+      <main className="centre">
+        <Stage
+          {...stage}
+          empty={
+            models.isPending || models.error ? null : (
+              <p className="muted">
+                {modelMissing ? "This model is not there (any more)." : "Add a model or upload a mesh to see it here."}
+              </p>
+            )
+          }
+        />
+        <JobList />
+      </main>
+      <aside className="panel" id="inspector" tabIndex={-1} aria-label="Controls">
+        {showsMesh ? (
+          meshSession.mesh ? (
+            <MeshInspector
+              key={meshSession.mesh.id}
+              mesh={meshSession.mesh}
+              classifierId={meshSession.classifierId}
+              onClassifier={meshSession.setClassifier}
+              foundClass={meshSession.foundClass}
+              estimation={meshSession.estimation}
+              estimations={meshSession.estimations}
+            />
+          ) : meshSession.error ? (
+            <Problem error={meshSession.error} />
+          ) : (
+            <PanelSkeleton />
+          )
+        ) : model ? (
+          <ModelInspector
+            model={model}
+            values={modelSession.values}
+            glb={modelSession.glb}
+            onValues={modelSession.change}
+            onRandom={modelSession.randomize}
+          />
+        ) : models.isPending ? (
+          <PanelSkeleton />
+        ) : (
+          <Welcome />
+        )}
+      </aside>
+      <DropTarget onFile={receive} />
+    </div>
+  );
+}
+
+function PanelSkeleton() {
+  return (
+    <div className="inspector" role="status" aria-label="Loading">
+      <div className="skeleton skeleton-row" />
+      <div className="skeleton skeleton-block" />
+    </div>
+  );
+}
+
+function Welcome() {
+  return (
+    <section className="inspector">
+      <h2>How it goes</h2>
+      <ol className="welcome">
+        <li>Add procedural models: one JSON document for each class of objects.</li>
+        <li>Train a classifier on them. Their random variations are all it needs.</li>
+        <li>Upload an unknown mesh, ask what it is, and let the model of its class rebuild it.</li>
+      </ol>
+    </section>
+  );
+}

@@ -1,0 +1,97 @@
+import { useState } from "react";
+
+import { useClassifications, useClassify } from "../api/queries";
+import type { Classification } from "../api/types";
+import { useJob } from "../hooks/useJob";
+import { duration, humanize, percent } from "../lib/format";
+import { ClassifierPicker } from "./ClassifierPicker";
+import { JobProgress } from "./JobProgress";
+import { Problem } from "./Problem";
+
+interface ClassificationPanelProps {
+  meshId: string;
+  classifierId: string | null;
+  onClassifier: (id: string) => void;
+}
+
+/** The newest classification of a mesh, whatever its state. */
+export function newestOf<Item extends { mesh_id: string; created_at: string }>(
+  items: Item[] | undefined,
+  meshId: string | null,
+): Item | undefined {
+  return (items ?? [])
+    .filter((item) => item.mesh_id === meshId)
+    .reduce<Item | undefined>((best, item) => (best && best.created_at >= item.created_at ? best : item), undefined);
+}
+
+/** Which class the mesh belongs to, with the probability of each. */
+export function ClassificationPanel({ meshId, classifierId, onClassifier }: ClassificationPanelProps) {
+  const classifications = useClassifications();
+  const classify = useClassify();
+  const newest = newestOf(classifications.data?.items, meshId);
+  const live = useJob(newest && newest.state !== "succeeded" ? newest.job_id : null);
+  const [again, setAgain] = useState(false);
+  const running = newest !== undefined && (newest.state === "queued" || newest.state === "running");
+
+  const answered = Boolean(newest?.result);
+
+  return (
+    <section className="step" aria-labelledby="classify-title">
+      <div className="step-head">
+        <h3 id="classify-title">
+          <span className="step-number">1</span> What is it?
+        </h3>
+        {answered && (
+          <button type="button" className="quiet" aria-expanded={again} onClick={() => setAgain(!again)}>
+            {again ? "Close" : "Classify again"}
+          </button>
+        )}
+      </div>
+      {(!answered || again) && (
+        <>
+          <ClassifierPicker selectedId={classifierId} onSelect={onClassifier} />
+          {classifierId !== null && !running && (
+            <button
+              type="button"
+              className="button"
+              disabled={classify.isPending}
+              onClick={() => classify.mutate({ meshId, classifierId }, { onSuccess: () => setAgain(false) })}
+            >
+              {classify.isPending ? "Starting…" : "Classify"}
+            </button>
+          )}
+        </>
+      )}
+      {classify.error && <Problem error={classify.error} onDismiss={() => classify.reset()} />}
+      {newest && newest.state !== "succeeded" && <JobProgress live={live} label="Classifying" />}
+      {newest?.state === "cancelled" && <p className="muted">The last classification was cancelled.</p>}
+      {newest?.result && <Probabilities result={newest.result} />}
+    </section>
+  );
+}
+
+const SHOWN_CLASSES = 6;
+
+function Probabilities({ result }: { result: NonNullable<Classification["result"]> }) {
+  const shown = result.probabilities.slice(0, SHOWN_CLASSES);
+  const hidden = result.probabilities.length - shown.length;
+  return (
+    <div className="probabilities" data-testid="probabilities">
+      <ul>
+        {shown.map(({ class_name, probability }, rank) => (
+          <li key={class_name} data-best={rank === 0}>
+            <span className="probability-class">{humanize(class_name)}</span>
+            <span className="probability-value">{percent(probability)}</span>
+            <span className="bar" aria-hidden="true">
+              <span style={{ width: `${probability * 100}%` }} />
+            </span>
+          </li>
+        ))}
+      </ul>
+      <p className="hint">
+        Mean of {result.per_view.length} views, {duration(result.seconds)}
+        {hidden > 0 && `; ${hidden} less likely classes not shown`}
+      </p>
+    </div>
+  );
+}

@@ -1,0 +1,127 @@
+import { useState } from "react";
+
+import { useClassifiers, useModels, useTrain } from "../api/queries";
+import { isTerminal } from "../api/types";
+import type { Classifier } from "../api/types";
+import { useJob } from "../hooks/useJob";
+import { count } from "../lib/format";
+import { JobProgress } from "./JobProgress";
+import { Problem } from "./Problem";
+
+interface ClassifierPickerProps {
+  selectedId: string | null;
+  onSelect: (id: string) => void;
+}
+
+/** How many images of each class a training draws. */
+const EFFORTS = [
+  { id: "quick", label: "Quick", variations: 60, imagesPerVariation: 5 },
+  { id: "good", label: "Good", variations: 300, imagesPerVariation: 5 },
+  { id: "full", label: "Full", variations: 1000, imagesPerVariation: 10 },
+] as const;
+
+type Effort = (typeof EFFORTS)[number];
+
+/** Classifiers that can be used, best first choice on top: the newest that is ready. */
+export function usableClassifiers(classifiers: Classifier[] | undefined): Classifier[] {
+  return (classifiers ?? [])
+    .filter((classifier) => classifier.state === "succeeded")
+    .toSorted((a, b) => b.created_at.localeCompare(a.created_at));
+}
+
+export function ClassifierPicker({ selectedId, onSelect }: ClassifierPickerProps) {
+  const classifiers = useClassifiers();
+  const models = useModels();
+  const train = useTrain();
+  const [effort, setEffort] = useState<Effort>(EFFORTS[0]);
+  const [training, setTraining] = useState(false);
+
+  const usable = usableClassifiers(classifiers.data?.items);
+  const pending = classifiers.data?.items.find((classifier) => !isTerminal(classifier.state));
+  const startedJob = train.data?.job.id ?? null;
+  const live = useJob(pending?.job_id ?? startedJob);
+  const showJob = pending !== undefined || live.snapshot.state === "failed";
+  const showForm = !pending && (training || (classifiers.isSuccess && usable.length === 0));
+  const modelCount = models.data?.length ?? 0;
+
+  const start = () => {
+    train.mutate(
+      {
+        modelIds: (models.data ?? []).map((model) => model.id),
+        variations: effort.variations,
+        imagesPerVariation: effort.imagesPerVariation,
+      },
+      { onSuccess: () => setTraining(false) },
+    );
+  };
+
+  return (
+    <div className="field-group">
+      {classifiers.isPending && <div className="skeleton skeleton-row" role="status" aria-label="Loading classifiers" />}
+      {classifiers.error && !classifiers.data && (
+        <Problem error={classifiers.error} onRetry={() => void classifiers.refetch()} />
+      )}
+      {usable.length > 0 && (
+        <div className="field">
+          <label htmlFor="classifier">Classifier</label>
+          <div className="field-row">
+            <select id="classifier" value={selectedId ?? ""} onChange={(event) => onSelect(event.target.value)}>
+              {usable.map((classifier) => (
+                <option key={classifier.id} value={classifier.id}>
+                  {classifier.name || "Unnamed"} · {count(classifier.class_names.length, "class", "classes")}
+                </option>
+              ))}
+            </select>
+            {!showForm && !pending && (
+              <button type="button" className="quiet" onClick={() => setTraining(true)}>
+                Train new
+              </button>
+            )}
+          </div>
+        </div>
+      )}
+      {showForm && (
+        <div className="well">
+          <p>
+            {usable.length === 0 ? "No classifier yet. " : ""}
+            {modelCount > 0
+              ? `Train one on ${modelCount === 1 ? "the model" : `all ${modelCount} models`}: it learns from random variations alone.`
+              : "Add a model first: a classifier learns from the models alone."}
+          </p>
+          <fieldset className="segmented" disabled={modelCount === 0}>
+            <legend className="visually-hidden">Training effort</legend>
+            {EFFORTS.map((option) => (
+              <label key={option.id}>
+                <input
+                  type="radio"
+                  name="effort"
+                  checked={effort.id === option.id}
+                  onChange={() => setEffort(option)}
+                />
+                <span>{option.label}</span>
+              </label>
+            ))}
+          </fieldset>
+          <p className="hint">{count(effort.variations * effort.imagesPerVariation, "image")} a class</p>
+          <div className="button-row">
+            <button
+              type="button"
+              className="button"
+              onClick={start}
+              disabled={modelCount === 0 || train.isPending}
+            >
+              {train.isPending ? "Starting…" : "Train classifier"}
+            </button>
+            {usable.length > 0 && (
+              <button type="button" className="quiet" onClick={() => setTraining(false)}>
+                Not now
+              </button>
+            )}
+          </div>
+          {train.error && <Problem error={train.error} onDismiss={() => train.reset()} />}
+        </div>
+      )}
+      {showJob && <JobProgress live={live} label="Training a classifier" />}
+    </div>
+  );
+}

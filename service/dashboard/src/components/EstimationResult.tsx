@@ -1,0 +1,88 @@
+import type { Estimation, EstimationResult as Result, Model } from "../api/types";
+import { duration, significant } from "../lib/format";
+import { formatRoute } from "../lib/route";
+import { Icon } from "./Icon";
+import { ParameterTable } from "./ParameterTable";
+
+/** The thresholds the choice among the layers goes by; an estimation's own settings overrule them. */
+const DEFAULT_THRESHOLDS = { surface: 0.04, zbuffer: 0.7 };
+
+const LAYERS: Record<number, string> = {
+  1: "Nearest of the random variations; neither refinement came close enough.",
+  2: "Refined on the distance between the surfaces.",
+  3: "Refined on the depth images from all sides.",
+};
+
+/** What an estimation found: its layer, its distances and its parameters. */
+export function EstimationResult({ estimation, model }: { estimation: Estimation; model: Model | undefined }) {
+  const result = estimation.result;
+  if (!result) return null;
+  const { layer, complete, distances, parameters, seconds } = result;
+  const threshold = thresholds(estimation);
+  const values = Object.fromEntries(parameters.map(({ name, value }) => [name, value]));
+  return (
+    <div className="estimate" data-testid="estimation-result">
+      {!complete && (
+        <p className="notice">The search was cancelled. This is the best it had found until then.</p>
+      )}
+      <div className="verdict">
+        <span className="layer" data-layer={layer}>
+          Layer {layer}
+        </span>
+        <p>{LAYERS[layer]}</p>
+      </div>
+      <dl className="distances">
+        <Distance name="Z-buffer" value={distances.zbuffer} limit={threshold.zbuffer} />
+        <Distance name="Surface" value={distances.surface} limit={threshold.surface} />
+        <Distance name="Panorama" value={distances.panorama} />
+        <div>
+          <dt>Time</dt>
+          <dd>{duration(seconds)}</dd>
+        </div>
+      </dl>
+      <ParameterTable parameters={parameters} />
+      <div className="button-row">
+        {estimation.mesh_url && (
+          <a className="button button-plain" href={estimation.mesh_url} download="fitted.glb">
+            <Icon name="download" /> Fitted mesh
+          </a>
+        )}
+        {model && (
+          <a className="button button-plain" href={formatRoute({ kind: "model", id: model.id, values })}>
+            Open in model <Icon name="arrow" />
+          </a>
+        )}
+      </div>
+    </div>
+  );
+}
+
+function thresholds(estimation: Estimation): typeof DEFAULT_THRESHOLDS {
+  const settings = estimation.settings as Record<string, unknown>;
+  const pick = (key: string, otherwise: number) => {
+    const value = settings[key];
+    return typeof value === "number" ? value : otherwise;
+  };
+  return {
+    surface: pick("surface_threshold", DEFAULT_THRESHOLDS.surface),
+    zbuffer: pick("zbuffer_threshold", DEFAULT_THRESHOLDS.zbuffer),
+  };
+}
+
+function Distance(props: { name: string; value: Result["distances"]["surface"]; limit?: number }) {
+  const { name, value, limit } = props;
+  const close = limit !== undefined && value !== null && value < limit;
+  return (
+    <div data-close={close}>
+      <dt>{name}</dt>
+      <dd>
+        {value === null ? "–" : significant(value)}
+        {limit !== undefined && value !== null && (
+          <small title={`${close ? "Below" : "Above"} the threshold ${limit}`}>
+            {close ? "<" : "≥"} {limit}
+          </small>
+        )}
+      </dd>
+    </div>
+  );
+}

@@ -1,0 +1,52 @@
+import type { Estimation, Mesh } from "../api/types";
+import { count, significant } from "../lib/format";
+import { ClassificationPanel } from "./ClassificationPanel";
+import { EstimationPanel } from "./EstimationPanel";
+
+interface MeshInspectorProps {
+  mesh: Mesh;
+  classifierId: string | null;
+  onClassifier: (id: string) => void;
+  foundClass: string | null;
+  estimation: Estimation | undefined;
+  estimations: Estimation[];
+}
+
+/** What is known about an unknown mesh, and the two questions that can be asked about it. */
+export function MeshInspector(props: MeshInspectorProps) {
+  const { mesh, classifierId, onClassifier, foundClass, estimation, estimations } = props;
+  return (
+    <section className="inspector" aria-label="Mesh">
+      <div className="inspector-head">
+        <p className="eyebrow">Unknown mesh</p>
+        <h2 className="file-name">{mesh.file_name}</h2>
+        <dl className="facts">
+          <div>
+            <dt>Size</dt>
+            <dd title={`${count(mesh.vertex_count, "vertex", "vertices")}`}>{count(mesh.face_count, "face")}</dd>
+          </div>
+          <div>
+            <dt>Extent</dt>
+            <dd>{extent(mesh)}</dd>
+          </div>
+          <div>
+            <dt>Surface</dt>
+            <dd>{mesh.watertight ? "Closed" : "Open"}</dd>
+          </div>
+        </dl>
+      </div>
+      <ClassificationPanel meshId={mesh.id} classifierId={classifierId} onClassifier={onClassifier} />
+      <EstimationPanel
+        meshId={mesh.id}
+        foundClass={foundClass}
+        estimation={estimation}
+        estimations={estimations}
+      />
+    </section>
+  );
+}
+
+function extent(mesh: Mesh): string {
+  const [low = [], high = []] = mesh.bounds;
+  return [0, 1, 2].map((axis) => significant((high[axis] ?? 0) - (low[axis] ?? 0), 2)).join(" × ");
+}

@@ -1,0 +1,141 @@
+/** Everything inside the canvas: light, ground, the layers, the camera. */
+import { Grid } from "@react-three/drei";
+import { useFrame, useThree } from "@react-three/fiber";
+import { useCallback, useEffect, useMemo, useRef, useState } from "react";
+import { Box3, Matrix4, Sphere } from "three";
+import type { DirectionalLight } from "three";
+
+import { CameraRig } from "./CameraRig";
+import type { CameraCommands } from "./CameraRig";
+import type { Layer } from "./layers";
+import type { Palette } from "./palette";
+import { Surface } from "./Surface";
+import { useGeometry } from "./useGeometry";
+import type { Decoded } from "./useGeometry";
+
+export type UpAxis = "y" | "z";
+
+export interface SceneProps {
+  layers: Layer[];
+  palette: Palette;
+  showEdges: boolean;
+  showGrid: boolean;
+  up: UpAxis;
+  onCamera: (commands: CameraCommands) => void;
+  /** Called after every change of what is drawn. */
+  onDrawn: (subject: string | null) => void;
+  onError: (error: unknown) => void;
+}
+
+const Z_UP = new Matrix4().makeRotationX(-Math.PI / 2);
+const Y_UP = new Matrix4();
+
+export function Scene({ layers, palette, showEdges, showGrid, up, onCamera, onDrawn, onError }: SceneProps) {
+  const [decoded, setDecoded] = useState<Record<string, Decoded>>({});
+  const report = useCallback((id: string, value: Decoded | null) => {
+    setDecoded((before) => {
+      const { [id]: _, ...others } = before;
+      return value ? { ...others, [id]: value } : others;
+    });
+  }, []);
+  const matrix = up === "z" ? Z_UP : Y_UP;
+
+  const first = layers[0] ? decoded[layers[0].id] : undefined;
+  const subject = first?.subject ?? null;
+  const { sphere, floor } = useMemo(() => {
+    if (!first?.geometry.boundingBox) return { sphere: null, floor: 0 };
+    const box = new Box3().copy(first.geometry.boundingBox).applyMatrix4(matrix);
+    return { sphere: box.getBoundingSphere(new Sphere()), floor: box.min.y };
+  }, [first, matrix]);
+
+  const invalidate = useThree((state) => state.invalidate);
+  useEffect(() => {
+    invalidate();
+    onDrawn(subject);
+  }, [decoded, layers, subject, onDrawn, invalidate]);
+
+  // The grid keeps its cell while a slider moves: a power of ten near a twentieth of what was framed.
+  const cell = useMemo(
+    () => 10 ** Math.round(Math.log10(Math.max(sphere?.radius ?? 1, 1e-9) / 6)),
+    // eslint-disable-next-line react/exhaustive-deps
+    [subject, sphere === null],
+  );
+
+  return (
+    <>
+      <hemisphereLight args={[palette.sky, palette.ground, 1.35]} />
+      <Headlights />
+      <directionalLight position={[4, 6, 1]} intensity={0.7} />
+      <directionalLight position={[-5, 2, -4]} intensity={0.4} />
+      {showGrid && sphere && (
+        <Grid
+          position={[sphere.center.x, floor - sphere.radius * 0.002, sphere.center.z]}
+          args={[1, 1]}
+          infiniteGrid
+          cellSize={cell}
+          sectionSize={cell * 5}
+          cellThickness={0.6}
+          sectionThickness={0.9}
+          cellColor={palette.gridCell}
+          sectionColor={palette.gridSection}
+          fadeDistance={sphere.radius * 9}
+          fadeStrength={2.5}
+        />
+      )}
+      <group matrix={matrix} matrixAutoUpdate={false}>
+        {layers.map((layer) => (
+          <LayerSurface
+            key={layer.id}
+            layer={layer}
+            palette={palette}
+            showEdges={showEdges}
+            onDecoded={report}
+            onError={onError}
+          />
+        ))}
+      </group>
+      <CameraRig bounds={sphere} frameKey={`${subject} ${up}`} settleKey={first?.settle ?? ""} onReady={onCamera} />
+    </>
+  );
+}
+
+/** A light over the viewer's left shoulder and a faint one from below, so that a mesh reads well from every side. */
+function Headlights() {
+  const key = useRef<DirectionalLight>(null);
+  const fill = useRef<DirectionalLight>(null);
+  useFrame(({ camera }) => {
+    key.current?.position.set(-0.45, 0.35, 1).applyQuaternion(camera.quaternion);
+    fill.current?.position.set(0.7, -0.6, 0.5).applyQuaternion(camera.quaternion);
+  });
+  return (
+    <>
+      <directionalLight ref={key} intensity={1.6} />
+      <directionalLight ref={fill} intensity={0.7} />
+    </>
+  );
+}
+
+interface LayerSurfaceProps {
+  layer: Layer;
+  palette: Palette;
+  showEdges: boolean;
+  onDecoded: (id: string, decoded: Decoded | null) => void;
+  onError: (error: unknown) => void;
+}
+
+function LayerSurface({ layer, palette, showEdges, onDecoded, onError }: LayerSurfaceProps) {
+  const { id, glb, subject, settle = "" } = layer;
+  const decoded = useGeometry(glb, subject, settle, onError);
+  useEffect(() => onDecoded(id, decoded), [id, decoded, onDecoded]);
+  useEffect(() => () => onDecoded(id, null), [id, onDecoded]);
+  if (!decoded || !layer.visible || layer.opacity <= 0) return null;
+  return (
+    <Surface
+      geometry={decoded.geometry}
+      color={palette.tones[layer.tone]}
+      edgeColor={palette.edge}
+      opacity={layer.opacity}
+      showEdges={showEdges}
+    />
+  );
+}

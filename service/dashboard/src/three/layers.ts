@@ -1,0 +1,18 @@
+/** What the stage is asked to draw. Free of three.js, so that the page can build it before three.js is loaded. */
+
+export type Tone = "model" | "query" | "fit";
+
+export interface Layer {
+  id: string;
+  label: string;
+  tone: Tone;
+  /** Binary glTF, absent while it is on its way. */
+  glb: ArrayBuffer | undefined;
+  /** What the bytes show: the camera is framed anew when the first layer's subject changes, and only then. */
+  subject: string;
+  /** When this changes the camera backs off if the mesh has outgrown the view; it never turns or comes closer. */
+  settle?: string;
+  visible: boolean;
+  /** 0 to 1. */
+  opacity: number;
+}

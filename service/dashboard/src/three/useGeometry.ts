@@ -1,0 +1,37 @@
+import { useEffect, useState } from "react";
+import type { BufferGeometry } from "three";
+
+import { loadGlb } from "./loadGlb";
+
+export interface Decoded {
+  geometry: BufferGeometry;
+  subject: string;
+  settle: string;
+}
+
+/** The decoded mesh of a layer; the last one stays on stage until the next one is ready. */
+export function useGeometry(
+  glb: ArrayBuffer | undefined,
+  subject: string,
+  settle: string,
+  onError: (error: unknown) => void,
+): Decoded | null {
+  const [decoded, setDecoded] = useState<Decoded | null>(null);
+
+  useEffect(() => {
+    if (glb === undefined) return;
+    let dropped = false;
+    loadGlb(glb).then(
+      (geometry) => (dropped ? geometry.dispose() : setDecoded({ geometry, subject, settle })),
+      (error: unknown) => {
+        if (!dropped) onError(error);
+      },
+    );
+    return () => {
+      dropped = true;
+    };
+  }, [glb, subject, settle, onError]);
+
+  useEffect(() => () => decoded?.geometry.dispose(), [decoded]);
+  return decoded;
+}
