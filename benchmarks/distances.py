@@ -27,7 +27,7 @@ from shapewright.mesh import TriangleMesh
 
 def sample_batch(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Ball-like meshes of about 1500 triangles, each stretched and dented in its own way."""
-    ball = trimesh.creation.uv_sphere(count=[28, 28])
+    ball = trimesh.creation.uv_sphere(count=[20, 20])
     rng = np.random.default_rng(0)
     vertices = np.array(ball.vertices) * rng.uniform(0.3, 1.5, (count, 1, 3))
     vertices += 0.1 * np.sin(vertices[:, :, [1, 2, 0]] * rng.uniform(2, 6, (count, 1, 3)))
