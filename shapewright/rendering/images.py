@@ -57,15 +57,12 @@ def render_images(
     count = len(rotations)
     shown = np.arange(count) if objects is None else np.asarray(objects, dtype=np.int64)
     _check(vertices, triangles, rotations, scales, shown, size, style)
-    out = np.empty((count, size, size, 3), dtype=np.uint8)
     if count == 0:
-        return out
+        return np.empty((0, size, size, 3), dtype=np.uint8)
     with shared_context() as context:
         renderer = renderer_for(context)
-        try:
-            tiles = renderer.tiles_a_batch(size, STYLES[style])
-        except ValueError as error:
-            raise RenderingError(str(error), where="size") from error
+        tiles = renderer.tiles_a_batch(size, STYLES[style])
+        out = np.empty((count, size, size, 3), dtype=np.uint8)
         for start, stop in _batches(shown, tiles, vertices):
             part = slice(start, stop)
             scene = build_scene(vertices, triangles, rotations[part], scales[part], shown[part])

@@ -16,6 +16,8 @@ from shapewright.rendering.views import three_quarter_view
 
 FILL = 0.90
 """Share of the picture's side that the object takes."""
+LARGE = 1024
+"""Pictures with more pixels a side are smoothed with 4 instead of 16 samples a pixel, to save memory."""
 QUERY_TINT, FITTED_TINT = 2, 3
 """Colour numbers of the query (blue) and of the fitted mesh (orange)."""
 
@@ -41,7 +43,7 @@ def render_mesh(
     """
     turned = three_quarter_view() if rotation is None else rotation
     look = STYLES[style] if color is None else replace(STYLES[style], colors=(color,) * 3)
-    picture: UInt8[np.ndarray, "H W 3"] = _draw([mesh], [1], [[0]], turned, size, look)[0]
+    picture: UInt8[np.ndarray, "H W 3"] = _draw([mesh], [1], turned, size, look)[0]
     return picture
 
 
@@ -71,7 +73,7 @@ def compose_side_by_side(
     """
     turned = three_quarter_view() if rotation is None else rotation
     look = STYLES["shaded"]
-    blue, orange = _draw([query, fitted], [QUERY_TINT, FITTED_TINT], [[0], [1]], turned, size, look)
+    blue, orange = _draw([query, fitted], [QUERY_TINT, FITTED_TINT], turned, size, look)
     overlay = ((blue.astype(np.uint16) + orange + 1) // 2).astype(np.uint8)
     return np.concatenate([blue, orange, overlay], axis=1)
 
@@ -79,15 +81,14 @@ def compose_side_by_side(
 def _draw(
     meshes: Sequence[TriangleMesh],
     tints: Sequence[int],
-    tiles: Sequence[Sequence[int]],
     rotation: Float[np.ndarray, "3 3"],
     size: int,
     style: Style,
 ) -> UInt8[np.ndarray, "N H W 3"]:
-    """Draw tile after tile the meshes it lists, all under the framing that shows every mesh whole."""
+    """One picture a mesh in its colour, all under the framing that shows every mesh whole."""
     if size < 1:
         raise RenderingError("a picture has at least one pixel", where="size")
-    look = replace(style, oversampling=4)
+    look = replace(style, oversampling=4 if size <= LARGE else 2)
     every = np.concatenate([mesh.vertices[np.unique(mesh.faces)] for mesh in meshes])
     turned = every @ rotation.T
     low, high = turned.min(axis=0), turned.max(axis=0)
@@ -96,27 +97,23 @@ def _draw(
     corners = [mesh.triangles.reshape(-1, 3) for mesh in meshes]
     sizes = [len(part) for part in corners]
     starts = np.concatenate([[0], np.cumsum(sizes)[:-1]]).astype(np.int64)
-    shown = np.array([mesh for tile in tiles for mesh in tile], dtype=np.int64)
-    placements = np.zeros((len(shown), 3, 4))
-    placements[:, :, :3] = rotation
-    scene = Scene(
-        positions=((np.concatenate(corners) - origin) * (FILL * WINDOW / reach)).astype(np.float32),
-        triangles=np.concatenate([np.arange(count) for count in sizes]).reshape(-1, 3),
-        commands=indirect_commands(shown, starts, sizes, starts),
-        placements=placements,
-        tiles=np.array([number for number, tile in enumerate(tiles) for _ in tile], dtype=np.int64),
-        tints=np.array([tints[mesh] for mesh in shown], dtype=np.int64),
-        tile_count=len(tiles),
-        normals=np.concatenate([corner_normals(mesh).reshape(-1, 3) for mesh in meshes]),
-    )
-    out = np.empty((len(tiles), size, size, 3), dtype=np.uint8)
+    positions = ((np.concatenate(corners) - origin) * (FILL * WINDOW / reach)).astype(np.float32)
+    triangles = np.concatenate([np.arange(count) for count in sizes]).reshape(-1, 3)
+    normals = np.concatenate([corner_normals(mesh).reshape(-1, 3) for mesh in meshes])
     with shared_context() as context:
         renderer = renderer_for(context)
-        try:
-            fits = renderer.tiles_a_batch(size, look)
-        except ValueError as error:
-            raise RenderingError(str(error), where="size") from error
-        if len(tiles) > fits:
-            raise RenderingError(f"{len(tiles)} pictures of {size} pixels do not fit the atlas", where="size")
-        renderer.draw(scene, out, look)
+        renderer.tiles_a_batch(size, look)
+        out = np.empty((len(meshes), size, size, 3), dtype=np.uint8)
+        for number, tint in enumerate(tints):
+            scene = Scene(
+                positions=positions,
+                triangles=triangles,
+                commands=indirect_commands(np.array([number]), starts, sizes, starts),
+                placements=np.concatenate([rotation, np.zeros((3, 1))], axis=1)[None],
+                tiles=np.zeros(1, dtype=np.int64),
+                tints=np.array([tint]),
+                tile_count=1,
+                normals=normals,
+            )
+            renderer.draw(scene, out[number : number + 1], look)
     return out

@@ -10,6 +10,7 @@ import moderngl
 import numpy as np
 from jaxtyping import Float, Float32, Int, UInt8
 
+from shapewright.errors import RenderingError
 from shapewright.rendering.styles import WINDOW, Style
 
 SAMPLE_BYTES = 12
@@ -75,12 +76,14 @@ class Renderer:
         """How many pictures fit one atlas, by the driver's texture limit and :data:`MAX_ATLAS_BYTES`.
 
         Raises:
-            ValueError: not even one picture of this size fits.
+            RenderingError: not even one picture of this size fits.
         """
         side = size * style.oversampling
         limit = int(self.context.info["GL_MAX_TEXTURE_SIZE"])
         if side > limit:
-            raise ValueError(f"a picture of {size} pixels needs {side} samples a side, the driver allows {limit}")
+            raise RenderingError(
+                f"a picture of {size} pixels needs {side} samples a side, the driver allows {limit}", where="size"
+            )
         return max(1, min(limit // side, MAX_ATLAS_BYTES // (side * side * SAMPLE_BYTES)))
 
     def draw(self, scene: Scene, out: UInt8[np.ndarray, "N H W 3"], style: Style, *, window: float = WINDOW) -> None:
