@@ -7,10 +7,10 @@ which block, and a longer series begins with the shorter one.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float, Int, UInt8
+from jaxtyping import Bool, Float, Int, UInt8
 
 from shapewright.classification.features import FeatureExtractor
 from shapewright.classification.settings import TrainingSettings
@@ -23,6 +23,7 @@ BLOCK = 16
 """Variations that are evaluated, drawn and described together; bounds the memory."""
 
 
+@runtime_checkable
 class _Described(Protocol):
     @property
     def name(self) -> str: ...
@@ -31,6 +32,7 @@ class _Described(Protocol):
     def digest(self) -> str: ...
 
 
+@runtime_checkable
 class InstanceGenerator(Protocol):
     """What learning needs of a compiled procedural model; :class:`shapewright.modeling.CompiledModel` is one."""
 
@@ -66,7 +68,7 @@ class FeatureSet:
     features: Float[np.ndarray, "N D"]
     labels: Int[np.ndarray, " N"]
     variations: Int[np.ndarray, " N"]
-    held_out: np.ndarray
+    held_out: Bool[np.ndarray, " N"]
 
 
 def variation_images(

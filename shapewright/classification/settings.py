@@ -1,5 +1,6 @@
 """How a classifier is trained."""
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -53,7 +54,6 @@ class TrainingSettings:
     subdivision_steps: int = 2
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "scale_range", tuple(float(end) for end in self.scale_range))
         checks = {
             "variations": (self.variations >= 2, "at least 2: one to learn from, one held out"),
             "images_per_variation": (self.images_per_variation >= 1, "at least 1"),
@@ -84,3 +84,29 @@ class TrainingSettings:
     def to_dict(self) -> dict[str, Any]:
         """The settings as JSON values."""
         return {**asdict(self), "scale_range": list(self.scale_range)}
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> "TrainingSettings":
+        """Settings from JSON values; what is missing keeps its default.
+
+        Raises:
+            ClassifierError: a name that is no setting, a value of a wrong type or that makes no sense.
+        """
+        known = dict(values)
+        for name in known:
+            if name not in cls.__dataclass_fields__:
+                raise ClassifierError("no such setting", where=name)
+        for name, value in known.items():
+            default = cls.__dataclass_fields__[name].default
+            numbers = (int, float) if isinstance(default, float) else int
+            if isinstance(default, tuple):
+                fine = isinstance(value, (list, tuple)) and all(isinstance(end, (int, float)) for end in value)
+            elif isinstance(default, str):
+                fine = isinstance(value, str)
+            else:
+                fine = isinstance(value, numbers) and not isinstance(value, bool)
+            if not fine:
+                raise ClassifierError(f"is {value!r}, a value like {default!r} is expected", where=name)
+        if "scale_range" in known:
+            known["scale_range"] = tuple(float(end) for end in known["scale_range"])
+        return cls(**known)
