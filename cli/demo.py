@@ -62,6 +62,7 @@ def demo(
     settings = {"variations": variations, "images_per_variation": images, "seed": seed}
     finished = False
     try:
+        _refuse_early(query)
         output.mkdir(parents=True, exist_ok=True)
         with contextlib.ExitStack() as stack:
             folder = data_dir or stack.enter_context(_temporary_folder())
@@ -88,6 +89,13 @@ def demo(
     except (ShapewrightError, OSError) as error:
         stderr().print(f"shapewright: the demo stopped: {error}", markup=False)
         raise typer.Exit(1) from None
+
+
+def _refuse_early(query: Path) -> None:
+    """A mesh that the service will refuse is told about before a classifier is trained."""
+    from shapewright.mesh_file import parse_mesh
+
+    parse_mesh(query.read_bytes(), query.suffix)
 
 
 @contextlib.contextmanager

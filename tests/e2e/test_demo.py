@@ -1,0 +1,92 @@
+"""The demo as a newcomer types it, smaller."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import urllib.request
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from shapewright.mesh_file import load_mesh
+
+SMALL = ("--variations", "16", "--images", "4", "--samples", "60")
+
+
+def _environment() -> dict[str, str]:
+    return {name: value for name, value in os.environ.items() if not name.startswith("SHAPEWRIGHT_")}
+
+
+@pytest.mark.timeout(300)
+def test_the_demo_once_on_its_sample(repository: Path, tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "cli", "demo", "--once", "--json", *SMALL, "--output", tmp_path / "out"],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        env=_environment(),
+    )
+    log = tmp_path / "out" / "service.log"
+    assert done.returncode == 0, done.stderr + (log.read_text()[-3000:] if log.exists() else "")
+    report = json.loads(done.stdout)
+    assert report["class_name"] == "glass_with_stem"
+    assert report["model"] == "glass_with_stem"
+    assert report["layer"] in (1, 2, 3)
+    assert all(p["minimum"] <= p["value"] <= p["maximum"] for p in report["parameters"])
+    assert report["distances"]["surface"] < 0.2
+    with Image.open(report["picture_file"]) as picture:
+        pixels = np.asarray(picture)
+    assert pixels.shape[1] == 3 * pixels.shape[0]
+    assert (pixels != pixels[0, 0]).any()
+    fitted, query = load_mesh(report["mesh_file"]), load_mesh(repository / "examples" / "goblet.ply")
+    assert np.abs(fitted.bounds - query.bounds).max() < 0.35 * np.ptp(query.bounds, axis=0).max()
+    leftover = [path for path in tmp_path.iterdir() if path.name != "out"]
+    assert leftover == [], "the service's folder was temporary"
+
+
+@pytest.mark.timeout(300)
+def test_it_keeps_serving_and_uses_a_kept_folder_again(tmp_path: Path) -> None:
+    arguments = [*SMALL, "--data-dir", str(tmp_path / "data"), "--output", str(tmp_path / "out")]
+    mesh = tmp_path / "sword.off"
+    command = [sys.executable, "-m", "cli"]
+    subprocess.run([*command, "instance", "sword", "-o", mesh], check=True, capture_output=True)
+    subprocess.run([*command, "demo", mesh, "--once", *arguments], check=True, capture_output=True, env=_environment())
+
+    process = subprocess.Popen(
+        [*command, "demo", mesh, *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        env={**_environment(), "PYTHONUNBUFFERED": "1"}, start_new_session=True,
+    )  # fmt: skip
+    said = ""
+    assert process.stdout is not None
+    for line in process.stdout:
+        said += line
+        if "Ctrl-C ends" in line:
+            break
+    assert "used again" in said, said
+    address = next(line.split()[-1] for line in said.splitlines() if line.startswith("Dashboard:"))
+    with urllib.request.urlopen(address) as answer:
+        assert b"<html" in answer.read().lower()
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60)
+    assert process.returncode == 0
+    with pytest.raises(OSError, match="refused"):
+        urllib.request.urlopen(address)
+
+
+def test_a_mesh_that_cannot_be_read_ends_it_with_a_reason(tmp_path: Path) -> None:
+    started_s = time.monotonic()
+    done = subprocess.run(
+        [sys.executable, "-m", "cli", "demo", "missing.off", "--once", "--output", tmp_path / "out"],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        env=_environment(),
+    )
+    assert done.returncode == 1
+    assert "missing.off" in done.stderr
+    assert time.monotonic() - started_s < 60, "it is noticed before anything is trained"
