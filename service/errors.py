@@ -13,6 +13,7 @@ from fastapi.responses import JSONResponse
 from sqlalchemy.exc import DBAPIError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from starlette.exceptions import HTTPException as StarletteHTTPException
+from starlette.routing import Match
 
 from models_store.errors import (
     ArtifactError,
@@ -122,7 +123,13 @@ def _means_full(error: Exception) -> bool:
         return error.errno in _FULL
     if isinstance(error, ArtifactError):
         return "no space left" in error.message
-    return isinstance(error, DBAPIError) and "disk is full" in str(error.orig)
+    # SQLite ends the transaction by itself then, so that what is seen first is a savepoint that is gone.
+    cause: BaseException | None = error
+    while isinstance(cause, DBAPIError):
+        if "disk is full" in str(cause.orig) or "DiskFull" in type(cause.orig).__name__:
+            return True
+        cause = cause.__context__ if isinstance(cause.__context__, DBAPIError) else cause.__cause__
+    return False
 
 
 def _is_away(error: DBAPIError) -> bool:
@@ -173,8 +180,23 @@ def http_problem(request: Request, error: StarletteHTTPException) -> Problem:
     if error.status_code == 404:
         return replace(problem, detail=f"there is nothing at {request.url.path[:500]}")
     if error.status_code == 405:
-        return replace(problem, detail=f"{request.method[:20]} is not possible here")
+        allow = ", ".join(_allowed_methods(request))
+        detail = f"{request.method[:20]} is not possible here"
+        return replace(problem, detail=detail, headers=(("Allow", allow),))
     return problem
+
+
+def _allowed_methods(request: Request) -> list[str]:
+    """What is possible at this path; the framework names only the methods of one of its routes."""
+    routes = request.app.routes
+    found = [
+        method
+        for method in ("GET", "POST")
+        if any(route.matches({**request.scope, "method": method})[0] is Match.FULL for route in routes)
+    ]
+    if "GET" in found and not request.url.path.endswith("/events"):  # an endless stream has no HEAD
+        found.insert(1, "HEAD")
+    return found
 
 
 def install_handlers(app: FastAPI) -> None:
@@ -190,6 +212,8 @@ def install_handlers(app: FastAPI) -> None:
 
     async def on_http(request: Request, error: Exception) -> JSONResponse:
         assert isinstance(error, StarletteHTTPException)
+        if isinstance(error.__cause__, OSError):  # of the temporary file of an upload; the framework says 400
+            return await on_problem(request, error.__cause__)
         return http_problem(request, error).response(request)
 
     async def on_validation(request: Request, error: Exception) -> JSONResponse:

@@ -54,7 +54,8 @@ class RequestContextMiddleware:
         method: str = scope["method"]
         bodiless = method == "HEAD" and not scope["path"].endswith("/events")
         if bodiless:
-            scope["method"] = "GET"  # the same headers as GET (RFC 9110, section 9.3.2), without the body
+            # the same headers as GET (RFC 9110, section 9.3.2), without the body; the server keeps its own scope
+            scope = {**scope, "method": "GET"}
         status, started_at, sent = 500, time.perf_counter(), 0
 
         async def send_on(message: Message) -> None:

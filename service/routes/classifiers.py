@@ -25,12 +25,13 @@ router = APIRouter(prefix="/v1/classifiers", tags=["classifiers"])
 )
 def create_classifier(services: ServicesDep, response: Response, after: BackgroundTasks, body: ClassifierIn) -> Any:
     """Train a classifier on variations of procedural models."""
+    settings = body.settings.checked()
     try:
         with services.database.writing() as session:
             row = catalog.request_classifier(
                 session,
                 body.model_ids,
-                body.settings.model_dump(exclude_none=True),
+                settings,
                 name=body.name,
                 now=now(),
                 max_attempts=services.settings.max_attempts,

@@ -26,13 +26,14 @@ router = APIRouter(prefix="/v1/estimations", tags=["estimations"])
 )
 def create_estimation(services: ServicesDep, response: Response, after: BackgroundTasks, body: EstimationIn) -> Any:
     """Estimate the parameter values with which a model rebuilds a mesh."""
+    settings = body.settings.checked()
     try:
         with services.database.writing() as session:
             row = catalog.request_estimation(
                 session,
                 body.mesh_id,
                 body.model_id,
-                body.settings.model_dump(exclude_none=True),
+                settings,
                 now=now(),
                 max_attempts=services.settings.max_attempts,
             )

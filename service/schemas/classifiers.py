@@ -2,27 +2,59 @@
 
 from typing import Annotated, Any, Self
 
-from pydantic import Field
+from pydantic import Field, PositiveFloat
 
 from models_store.job_kinds import JobState
 from models_store.tables import ClassifierRow
 from service.schemas.common import Identifier, InBody, Moment, OutBody, PageOut, Seed
+from shapewright.errors import ClassifierError
 
 
 class TrainingSettingsIn(InBody):
     """Settings of a training; what is left out keeps the library's default (paper section 3.2)."""
 
-    variations: Annotated[int, Field(ge=1, le=100_000)] | None = Field(
+    variations: Annotated[int, Field(ge=2, le=100_000)] | None = Field(
         default=None, description="Random variations of each class."
     )
     images_per_variation: Annotated[int, Field(ge=1, le=1000)] | None = None
-    image_size: Annotated[int, Field(ge=32, le=1024)] | None = Field(default=None, description="Pixels.")
+    image_size: Annotated[int, Field(ge=32, le=1024, multiple_of=32)] | None = Field(
+        default=None, description="Pixels."
+    )
+    scale_range: tuple[PositiveFloat, PositiveFloat] | None = Field(
+        default=None, description="Random scales of the object in its pictures: smallest and largest."
+    )
     held_out: Annotated[float, Field(gt=0, lt=1)] | None = Field(
         default=None, description="Share of the variations that measure the accuracy."
     )
     epochs: Annotated[int, Field(ge=1, le=10_000)] | None = None
-    batch_size: Annotated[int, Field(ge=1, le=4096)] | None = None
+    patience: Annotated[int, Field(ge=1, le=10_000)] | None = Field(
+        default=None, description="Epochs without a better held-out loss after which training stops."
+    )
+    learning_rate: Annotated[float, Field(gt=0)] | None = None
+    weight_decay: Annotated[float, Field(ge=0)] | None = None
+    batch_size: Annotated[int, Field(ge=1, le=65_536)] | None = None
     seed: Seed | None = None
+    backbone: Annotated[str, Field(max_length=100)] | None = None
+    style: Annotated[str, Field(max_length=50)] | None = Field(default=None, description="Look of the pictures.")
+    window: Annotated[float, Field(gt=0)] | None = Field(
+        default=None, description="Half the side of a picture, in units of the scaled object."
+    )
+    subdivision_steps: Annotated[int, Field(ge=0, le=3)] | None = None
+
+    def checked(self) -> dict[str, Any]:
+        """The settings that were given, held against the library's own rules.
+
+        Raises:
+            ClassifierError: they make no sense together; ``where`` is the field of the body.
+        """
+        from shapewright.classification.settings import TrainingSettings  # when first needed: a quick start
+
+        given = self.model_dump(exclude_none=True)
+        try:
+            TrainingSettings(**given)
+        except ClassifierError as error:
+            raise ClassifierError(error.message, where=f"settings.{error.where}") from None
+        return given
 
 
 class ClassifierIn(InBody):

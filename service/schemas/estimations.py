@@ -8,6 +8,7 @@ from models_store.job_kinds import JobState
 from models_store.tables import EstimationRow
 from service.schemas.common import Identifier, InBody, Moment, OutBody, PageOut, Seed
 from service.schemas.meshes import Coordinates
+from shapewright.errors import EstimationError
 
 
 class EstimationSettingsIn(InBody):
@@ -16,15 +17,39 @@ class EstimationSettingsIn(InBody):
     samples: Annotated[int, Field(ge=1, le=1_000_000)] | None = Field(
         default=None, description="Random instances of layer 1."
     )
-    surface_points: Annotated[int, Field(ge=100, le=100_000)] | None = Field(
+    surface_points: Annotated[int, Field(ge=1, le=100_000)] | None = Field(
         default=None, description="Poisson-disk points on the query."
     )
-    image_size: Annotated[int, Field(ge=16, le=1024)] | None = Field(
+    image_size: Annotated[int, Field(ge=2, le=1024, multiple_of=2)] | None = Field(
         default=None, description="Pixels of a depth view's side."
     )
-    surface_threshold: Annotated[float, Field(gt=0)] | None = None
-    zbuffer_threshold: Annotated[float, Field(gt=0)] | None = None
+    subdivision_steps: Annotated[int, Field(ge=0, le=4)] | None = Field(
+        default=None, description="Catmull–Clark steps of the instances that are compared."
+    )
+    surface_threshold: Annotated[float, Field(ge=0)] | None = None
+    zbuffer_threshold: Annotated[float, Field(ge=0)] | None = None
+    step_sizes: Annotated[list[Annotated[float, Field(gt=0)]], Field(min_length=1, max_length=20)] | None = Field(
+        default=None, description="Steps of the hill climbing, largest first."
+    )
     seed: Seed | None = None
+    estimator: Annotated[str, Field(max_length=50)] | None = Field(
+        default=None, description="Which estimator works; `reference` is the paper, step by step."
+    )
+
+    def checked(self) -> dict[str, Any]:
+        """The settings that were given, held against the library's own rules.
+
+        Raises:
+            EstimationError: they make no sense together; ``where`` is the field of the body.
+        """
+        from shapewright.estimation.settings import EstimationSettings  # when first needed: a quick start
+
+        given = self.model_dump(exclude_none=True)
+        try:
+            EstimationSettings.from_dict(given)
+        except EstimationError as error:
+            raise EstimationError(error.message, where=f"settings.{error.where}") from None
+        return given
 
 
 class EstimationIn(InBody):
@@ -65,12 +90,14 @@ class PoseOut(OutBody):
 
 
 class StageOut(OutBody):
-    """What one stage of the estimation found."""
+    """What one of the optimisations found (paper figure 4)."""
 
     name: str
+    layer: Literal[1, 2, 3]
     values: list[float] = Field(description="x in the order of the model's parameters.")
     pose: PoseOut
     distances: DistancesOut
+    complete: bool = Field(description="False if it was cancelled in the middle.")
 
 
 class EstimationResultOut(OutBody):
@@ -78,6 +105,7 @@ class EstimationResultOut(OutBody):
 
     layer: Literal[1, 2, 3]
     complete: bool = Field(description="False if it was cancelled: the best so far.")
+    values: list[float] = Field(description="x in the order of the model's parameters.")
     parameters: list[ParameterEstimateOut]
     distances: DistancesOut
     stages: list[StageOut]

@@ -1,0 +1,227 @@
+"""Training, classifying and estimating over HTTP; the work itself is done as workers do it, by claiming the job."""
+
+from functools import partial
+from typing import Any
+
+import pytest
+from service_support import GLB, NOWHERE, LiveService, problem, running, service, shared_service, tetrahedron
+
+from models_store import catalog
+from models_store.broker import QUEUE
+from shapewright.mesh_file import parse_mesh
+
+__all__ = ["service", "shared_service"]
+
+
+def two_models(service: LiveService) -> list[str]:
+    return [service.add_model(name)["id"] for name in ("box", "crate")]
+
+
+def train(service: LiveService) -> dict[str, Any]:
+    """Ask for a classifier and do the work."""
+    accepted = service.client.post("/v1/classifiers", json={"name": "boxes", "model_ids": two_models(service)}).json()
+    service.services.artifacts.put("classifiers/one.onnx", b"onnx")
+    record = partial(
+        catalog.record_classifier,
+        identifier=accepted["id"],
+        onnx_key="classifiers/one.onnx",
+        class_names=["box", "crate"],
+        metrics={"accuracy": 0.5},
+        seconds=1.5,
+    )
+    service.work(accepted["job"]["id"], record)
+    classifier: dict[str, Any] = service.client.get(accepted["url"]).json()
+    return classifier
+
+
+def test_a_training_is_accepted_and_its_classifier_comes(service: LiveService) -> None:
+    models = two_models(service)
+    body = {"model_ids": models, "settings": {"variations": 20, "epochs": 3, "scale_range": [0.9, 1.1]}}
+    response = service.client.post("/v1/classifiers", json=body)
+    assert response.status_code == 202
+    accepted = response.json()
+    assert response.headers["location"] == f"/v1/jobs/{accepted['job']['id']}" == accepted["job"]["url"]
+    assert accepted["url"] == accepted["job"]["result_url"] == f"/v1/classifiers/{accepted['id']}"
+    waiting = service.client.get(accepted["url"]).json()
+    assert waiting["state"] == "queued"
+    assert waiting["settings"] == body["settings"]
+    assert (waiting["name"], waiting["metrics"], waiting["onnx_url"]) == (None, None, None)
+    problem(service.client.get(f"{accepted['url']}/onnx"), 404)
+
+    ready = train(service)
+    assert (ready["state"], ready["name"], ready["seconds"]) == ("succeeded", "boxes", 1.5)
+    assert (ready["class_names"], ready["metrics"]) == (["box", "crate"], {"accuracy": 0.5})
+    onnx = service.client.get(ready["onnx_url"])
+    assert onnx.content == b"onnx"
+    assert "attachment" in onnx.headers["content-disposition"]
+    assert service.client.get(ready["onnx_url"], headers={"If-None-Match": onnx.headers["etag"]}).status_code == 304
+    listed = service.client.get("/v1/classifiers").json()["items"]
+    assert [item["id"] for item in listed] == [ready["id"], accepted["id"]]
+
+
+@pytest.mark.parametrize(
+    ("body", "where"),
+    [
+        ({}, "model_ids"),
+        ({"model_ids": []}, "model_ids"),
+        ({"model_ids": ["BOX"], "settings": {"variations": 0}}, "settings.variations"),
+        ({"model_ids": ["BOX"], "settings": {"image_size": 100}}, "settings.image_size"),
+        ({"model_ids": ["BOX"], "settings": {"scale_range": [2.0, 1.0]}}, "settings.scale_range"),
+        ({"model_ids": ["BOX"], "settings": {"backbone": "hand-made"}}, "settings.backbone"),
+        ({"model_ids": ["BOX"], "settings": {"magic": 1}}, "settings.magic"),
+        ({"model_ids": ["BOX", "0" * 64]}, "model_ids[1]"),
+        ({"model_ids": ["BOX", "no id"]}, "model_ids[1]"),
+        ({"model_ids": ["BOX"]}, "model_ids"),  # one class alone cannot be told apart
+    ],
+)
+def test_a_training_that_makes_no_sense_is_refused(shared_service: LiveService, body: Any, where: str) -> None:
+    box = shared_service.add_model("box")["id"]
+    body = {**body, **({"model_ids": [box if m == "BOX" else m for m in body["model_ids"]]} if body else {})}
+    problem(shared_service.client.post("/v1/classifiers", json=body), 422, where)
+    assert shared_service.client.get("/v1/classifiers").json()["items"] == []
+
+
+def test_a_mesh_is_classified_by_the_newest_classifier(service: LiveService) -> None:
+    mesh = service.upload(tetrahedron()).json()["id"]
+    url = "/v1/classifications"
+    problem(service.client.post(url, json={"mesh_id": mesh}), 409, "classifier_id")
+    classifier = train(service)
+    response = service.client.post(url, json={"mesh_id": mesh, "views": 2, "seed": 7})
+    assert response.status_code == 202
+    accepted = response.json()
+    waiting = service.client.get(accepted["url"]).json()
+    assert (waiting["classifier_id"], waiting["result"]) == (classifier["id"], None)
+    assert (waiting["views"], waiting["seed"]) == (2, 7)
+    result = {
+        "class_name": "crate",
+        "probabilities": [{"class_name": "crate", "probability": 0.75}, {"class_name": "box", "probability": 0.25}],
+        "per_view": [[0.2, 0.8], [0.3, 0.7]],
+        "seconds": 0.1,
+    }
+    service.work(
+        accepted["job"]["id"], partial(catalog.record_classification, identifier=accepted["id"], result=result)
+    )
+    done = service.client.get(accepted["url"]).json()
+    assert (done["state"], done["result"]) == ("succeeded", result)
+    assert service.client.get(url).json()["items"] == [done]
+
+
+def test_a_classifier_in_training_cannot_be_asked(service: LiveService) -> None:
+    mesh = service.upload(tetrahedron()).json()["id"]
+    accepted = service.client.post("/v1/classifiers", json={"model_ids": two_models(service)}).json()
+    body = {"mesh_id": mesh, "classifier_id": accepted["id"]}
+    problem(service.client.post("/v1/classifications", json=body), 409, "classifier_id")
+
+
+def estimation_result() -> dict[str, Any]:
+    pose = {"rotation": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], "translation": [1.0, 2.0, 3.0]}
+    pose["scale"] = 2.0  # type: ignore[assignment]
+    distances = {"panorama": 3.0, "surface": 0.02, "zbuffer": 0.3, "zbuffer_raw": 900.0}
+    stage = {"layer": 1, "values": [1.5, 1.0], "pose": pose, "distances": distances, "complete": True}
+    return {
+        "layer": 3,
+        "complete": True,
+        "values": [1.5, 1.0],
+        "parameters": [
+            {
+                "name": "neck_length",
+                "label": "neck length",
+                "unit": "mm",
+                "value": 1.5,
+                "base_value": 40.0,
+                "minimum": 0.5,
+                "maximum": 2.0,
+            }
+        ],
+        "pose": pose,
+        "distances": distances,
+        "stages": [{"name": "panorama", **stage}, {"name": "zbuffer", **stage, "layer": 3}],
+        "seconds": 12.5,
+    }
+
+
+def test_an_estimation_is_accepted_and_its_answer_comes(service: LiveService) -> None:
+    mesh, model = service.upload(tetrahedron()).json(), service.add_model()
+    settings = {"samples": 50, "subdivision_steps": 1, "step_sizes": [1.0, 0.1], "estimator": "reference"}
+    body = {"mesh_id": mesh["id"], "model_id": model["id"], "settings": settings}
+    accepted = service.client.post("/v1/estimations", json=body).json()
+    waiting = service.client.get(accepted["url"]).json()
+    assert (waiting["state"], waiting["result"], waiting["mesh_url"]) == ("queued", None, None)
+    assert (waiting["mesh_id"], waiting["model_id"]) == (mesh["id"], model["id"])
+    assert waiting["settings"] == settings
+    problem(service.client.get(f"{accepted['url']}/mesh"), 404)
+
+    fitted = parse_mesh(tetrahedron(), "off").to_bytes("glb")
+    service.services.artifacts.put("estimations/one.glb", fitted)
+    record = partial(
+        catalog.record_estimation,
+        identifier=accepted["id"],
+        result=estimation_result(),
+        mesh_key="estimations/one.glb",
+    )
+    service.work(accepted["job"]["id"], record)
+    done = service.client.get(accepted["url"]).json()
+    assert (done["state"], done["result"]) == ("succeeded", estimation_result())
+    content = service.client.get(done["mesh_url"])
+    assert (content.content, content.headers["content-type"]) == (fitted, GLB)
+    assert service.client.get("/v1/estimations").json()["items"] == [done]
+
+
+@pytest.mark.parametrize(
+    ("change", "where"),
+    [
+        ({"mesh_id": "0" * 64}, "mesh_id"),
+        ({"model_id": "0" * 64}, "model_id"),
+        ({"model_id": "../x"}, "model_id"),
+        ({"mesh_id": None}, "mesh_id"),
+        ({"settings": {"samples": 0}}, "settings.samples"),
+        ({"settings": {"image_size": 101}}, "settings.image_size"),
+        ({"settings": {"step_sizes": [0.1, 1.0]}}, "settings.step_sizes"),
+        ({"settings": {"estimator": "magic"}}, "settings.estimator"),
+    ],
+)
+def test_an_estimation_that_makes_no_sense_is_refused(shared_service: LiveService, change: Any, where: str) -> None:
+    body = {
+        "mesh_id": shared_service.upload(tetrahedron()).json()["id"],
+        "model_id": shared_service.add_model()["id"],
+        **change,
+    }
+    problem(shared_service.client.post("/v1/estimations", json=body), 422, where)
+    assert shared_service.client.get("/v1/estimations").json()["items"] == []
+
+
+def test_a_failed_job_tells_why(service: LiveService) -> None:
+    accepted = service.client.post("/v1/classifiers", json={"model_ids": two_models(service)}).json()
+    service.fail(accepted["job"]["id"], "Cannot learn", "too few pictures", "settings.variations")
+    job = service.client.get(accepted["job"]["url"]).json()
+    assert job["error"] == {"title": "Cannot learn", "detail": "too few pictures", "where": "settings.variations"}
+    assert service.client.get(accepted["url"]).json()["state"] == "failed"
+
+
+def test_without_a_broker_the_job_is_accepted_and_stays_queued(tmp_path) -> None:
+    with running(tmp_path / "data", broker_url=NOWHERE) as live:
+        response = live.client.post("/v1/classifiers", json={"model_ids": two_models(live)})
+        assert response.status_code == 202
+        job = live.client.get(response.headers["location"]).json()
+        assert (job["state"], job["attempt"]) == ("queued", 0)
+        assert live.client.get("/readyz").json() == {
+            "ready": True,
+            "database": True,
+            "artifacts": True,
+            "broker": False,
+        }
+        assert "shapewright_wakeups_lost_total 3.0" in live.client.get("/metrics").text
+
+
+def test_a_wakeup_is_in_the_queue_when_the_job_is_accepted(service: LiveService) -> None:
+    service.client.post("/v1/classifiers", json={"model_ids": two_models(service)}).raise_for_status()
+    service.client.get("/healthz").raise_for_status()  # on the same connection: after the work of the one before
+    with service.services.celery.connection_for_read() as connection:
+        queue = connection.SimpleQueue(QUEUE)
+        kinds = [queue.get(timeout=5).headers["task"] for _ in range(3)]
+        queue.close()
+    assert sorted(kinds) == [
+        "shapewright.render_thumbnail",
+        "shapewright.render_thumbnail",
+        "shapewright.train_classifier",
+    ]
