@@ -1,6 +1,16 @@
 import { describe, expect, it } from "vitest";
 
-import { ago, duration, humanize, parameterValue, parseTime, percent, significant, wholeDuration } from "../src/lib/format";
+import {
+  ago,
+  duration,
+  humanize,
+  parameterLabel,
+  parameterValue,
+  parseTime,
+  percent,
+  significant,
+  wholeDuration,
+} from "../src/lib/format";
 
 describe("numbers", () => {
   it("keeps three significant digits without exponents", () => {
@@ -46,4 +56,6 @@ describe("times", () => {
 it("makes words of names", () => {
   expect(humanize("glass_with_stem")).toBe("Glass with stem");
   expect(humanize("")).toBe("");
+  expect(parameterLabel({ name: "stem_length", label: "length of the stem" })).toBe("Length of the stem");
+  expect(parameterLabel({ name: "stem_length", label: "" })).toBe("Stem length");
 });

@@ -67,6 +67,7 @@ export function App() {
         ...(model ? { subtitle: count(model.parameters.length, "parameter") } : {}),
         layers: modelSession.layers,
         busy: modelSession.busy,
+        held: modelSession.held,
         error: modelSession.error,
       };
 
@@ -139,6 +140,7 @@ export function App() {
             glb={modelSession.glb}
             onValues={modelSession.change}
             onRandom={modelSession.randomize}
+            onHeld={modelSession.setHeld}
           />
         ) : models.isPending ? (
           <PanelSkeleton />

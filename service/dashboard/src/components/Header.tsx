@@ -22,7 +22,7 @@ export function Header() {
         <span className="dot" aria-hidden="true" />
         {text}
       </p>
-      <a className="header-link" href="/docs">
+      <a className="header-link" href="/openapi.json" title="The OpenAPI document of the service">
         API
       </a>
     </header>

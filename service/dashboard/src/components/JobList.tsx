@@ -10,7 +10,7 @@ import { Problem } from "./Problem";
 export function JobList() {
   const jobs = useJobs();
   const classifications = useClassifications();
-  const now = useNow(5000);
+  const now = useNow(2000);
   const shown = (jobs.data?.items ?? [])
     .filter((job) => job.kind !== "render_thumbnail" || job.state === "failed" || job.state === "running")
     .toSorted((a, b) => b.created_at.localeCompare(a.created_at))
@@ -53,7 +53,7 @@ function describe(job: Job): string {
 function took(job: Job, now: Date): string {
   if (!job.started_at) return "";
   const end = job.finished_at ? parseTime(job.finished_at) : isTerminal(job.state) ? null : now;
-  return end ? duration((end.getTime() - parseTime(job.started_at).getTime()) / 1000) : "";
+  return end ? duration(Math.max(0, end.getTime() - parseTime(job.started_at).getTime()) / 1000) : "";
 }
 
 /** Leads to what the job is about, where the page has a place for it. */

@@ -12,10 +12,11 @@ interface ModelInspectorProps {
   glb: ArrayBuffer | undefined;
   onValues: (values: Values) => void;
   onRandom: () => void;
+  onHeld: (held: boolean) => void;
 }
 
 /** The parameters of the selected model. */
-export function ModelInspector({ model, values, glb, onValues, onRandom }: ModelInspectorProps) {
+export function ModelInspector({ model, values, glb, onValues, onRandom, onHeld }: ModelInspectorProps) {
   const changed = model.parameters.some(({ name }) => (values[name] ?? 1) !== 1);
   return (
     <section className="inspector" aria-label="Model">
@@ -55,6 +56,7 @@ export function ModelInspector({ model, values, glb, onValues, onRandom }: Model
             parameter={parameter}
             value={values[parameter.name] ?? 1}
             onChange={(value) => onValues({ ...values, [parameter.name]: value })}
+            onHeld={onHeld}
           />
         ))}
         {model.parameters.length === 0 && <p className="muted">This model has no parameters.</p>}

@@ -2,32 +2,35 @@ import { useId } from "react";
 import type { CSSProperties } from "react";
 
 import type { Parameter } from "../api/types";
-import { humanize, parameterValue } from "../lib/format";
+import { parameterLabel, parameterValue } from "../lib/format";
 import { Icon } from "./Icon";
 
 interface ParameterSliderProps {
   parameter: Parameter;
   value: number;
   onChange: (value: number) => void;
+  /** The slider is being dragged, or no longer. */
+  onHeld: (held: boolean) => void;
 }
 
 /** One parameter of a model; x = 1, the base, is marked on the track. */
-export function ParameterSlider({ parameter, value, onChange }: ParameterSliderProps) {
+export function ParameterSlider({ parameter, value, onChange, onHeld }: ParameterSliderProps) {
   const id = useId();
-  const { name, label, minimum, maximum } = parameter;
+  const { name, minimum, maximum } = parameter;
+  const label = parameterLabel(parameter);
   const span = maximum - minimum || 1;
   const at = (x: number) => (x - minimum) / span;
   const shown = parameterValue(value, parameter);
   const style = { "--value": at(value), "--base": at(1) } as CSSProperties;
   return (
     <div className="parameter" style={style} data-parameter={name}>
-      <label htmlFor={id}>{label || humanize(name)}</label>
+      <label htmlFor={id}>{label}</label>
       <button
         type="button"
         className="icon-button parameter-reset"
         onClick={() => onChange(1)}
         disabled={value === 1}
-        aria-label={`Reset ${label || name}`}
+        aria-label={`Reset ${label}`}
         title="Back to the base model"
       >
         <Icon name="reset" size={13} />
@@ -42,6 +45,9 @@ export function ParameterSlider({ parameter, value, onChange }: ParameterSliderP
           step={span / 200}
           value={value}
           aria-valuetext={shown}
+          onPointerDown={() => onHeld(true)}
+          onPointerUp={() => onHeld(false)}
+          onPointerCancel={() => onHeld(false)}
           onChange={(event) => onChange(event.target.valueAsNumber)}
         />
       </div>

@@ -1,7 +1,7 @@
 import type { CSSProperties } from "react";
 
 import type { ParameterEstimate } from "../api/types";
-import { humanize, parameterValue, significant } from "../lib/format";
+import { parameterLabel, parameterValue, significant } from "../lib/format";
 
 /** The estimated parameters: name, value, and where it lies in its range (the tick is the base model). */
 export function ParameterTable({ parameters }: { parameters: ParameterEstimate[] }) {
@@ -20,7 +20,7 @@ export function ParameterTable({ parameters }: { parameters: ParameterEstimate[]
       <tbody>
         {parameters.map((parameter) => (
           <tr key={parameter.name}>
-            <th scope="row">{parameter.label || humanize(parameter.name)}</th>
+            <th scope="row">{parameterLabel(parameter)}</th>
             <td className="number">{parameterValue(parameter.value, parameter)}</td>
             <td>
               <RangeBar parameter={parameter} />

@@ -19,6 +19,8 @@ interface StageProps {
   subtitle?: string;
   layers: Layer[];
   busy: boolean;
+  /** A slider that changes the mesh is being held. */
+  held?: boolean;
   error: unknown;
   /** Shown in the middle while there is nothing to draw. */
   empty?: ReactNode;
@@ -28,7 +30,7 @@ interface StageProps {
 
 const TURN_RAD = Math.PI / 18;
 
-export function Stage({ title, subtitle, layers, busy, error, empty, legend }: StageProps) {
+export function Stage({ title, subtitle, layers, busy, held = false, error, empty, legend }: StageProps) {
   const scheme = useColorScheme();
   const [showEdges, setShowEdges] = useState(false);
   const [showGrid, setShowGrid] = useState(true);
@@ -92,6 +94,7 @@ export function Stage({ title, subtitle, layers, busy, error, empty, legend }: S
               showEdges={showEdges}
               showGrid={showGrid}
               up={up}
+              held={held}
               onCamera={onCamera}
               onDrawn={onDrawn}
               onError={setDrawError}

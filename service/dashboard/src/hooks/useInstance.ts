@@ -9,8 +9,7 @@ export type Values = Record<string, number>;
 type Ask = { values: Values } | { seed: number };
 
 export interface LiveInstance {
-  /** The mesh, its model, and which random draw it came from (empty when it came from the sliders). */
-  instance: (Instance & { modelId: string; draw: string }) | null;
+  instance: (Instance & { modelId: string }) | null;
   busy: boolean;
   error: ApiError | null;
   /** Ask for the mesh of these values, or of a random variation. */
@@ -32,11 +31,7 @@ export function useInstance(modelId: string | null, onValues: (values: Values) =
     if (modelId === null) return;
     const requests = new LatestWins<Ask, Instance>((input, signal) => api.createInstance(modelId, input, signal), {
       onResult: (made, input) => {
-        setInstance((before) => ({
-          ...made,
-          modelId,
-          draw: "seed" in input ? `${input.seed}` : (before?.draw ?? ""),
-        }));
+        setInstance({ ...made, modelId });
         setError(null);
         if ("seed" in input) report.current(made.values);
       },

@@ -11,6 +11,7 @@ const MOST_SEED = 2 ** 31;
 export function useModelSession(model: Model | null, linkedValues: Values | undefined) {
   const modelId = model?.id ?? null;
   const [values, setValues] = useState<Values>({});
+  const [held, setHeld] = useState(false);
   const { instance, busy, error, ask } = useInstance(modelId, setValues);
 
   // A link may carry values; they are compared as text because each parse of the address makes a new object.
@@ -42,7 +43,6 @@ export function useModelSession(model: Model | null, linkedValues: Values | unde
               tone: "model",
               glb: instance?.glb,
               subject: `model ${instance?.modelId ?? ""}`,
-              settle: instance?.draw ?? "",
               visible: true,
               opacity: 1,
             },
@@ -51,6 +51,8 @@ export function useModelSession(model: Model | null, linkedValues: Values | unde
   );
   return {
     values,
+    held,
+    setHeld,
     layers,
     busy,
     error,

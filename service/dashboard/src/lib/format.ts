@@ -7,6 +7,12 @@ export function humanize(name: string): string {
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
+/** What a parameter is called: its label as a sentence begins, or its name in words. */
+export function parameterLabel(parameter: { name: string; label: string }): string {
+  const label = parameter.label.trim();
+  return label ? label.charAt(0).toUpperCase() + label.slice(1) : humanize(parameter.name);
+}
+
 /** A number with `digits` significant digits, never in exponent form for everyday sizes. */
 export function significant(value: number, digits = 3): string {
   if (!Number.isFinite(value)) return "–";

@@ -1,4 +1,4 @@
-/** Orbit controls that frame a subject once and leave the camera alone afterwards. */
+/** Orbit controls that frame a subject once and then leave the camera to the viewer. */
 import { OrbitControls } from "@react-three/drei";
 import { useThree } from "@react-three/fiber";
 import { useCallback, useEffect, useLayoutEffect, useRef } from "react";
@@ -17,10 +17,14 @@ interface CameraRigProps {
   bounds: Sphere | null;
   /** The camera is framed anew when this changes. */
   frameKey: string;
-  /** When this changes the camera backs off if the sphere is not all in view. */
-  settleKey: string;
+  /** A control that changes the mesh is being held: the camera stays where it is. */
+  held: boolean;
   onReady: (commands: CameraCommands) => void;
 }
+
+const START_DIRECTION = new Vector3(0.75, 0.42, 1).normalize();
+const MARGIN = 1.08;
+const GLIDE_MS = 320;
 
 /** Whether the whole sphere lies inside the sides of the view (a tenth may stick out). */
 function isInView(camera: PerspectiveCamera, sphere: Sphere): boolean {
@@ -31,63 +35,86 @@ function isInView(camera: PerspectiveCamera, sphere: Sphere): boolean {
   return frustum.planes.slice(0, 4).every((plane) => plane.distanceToPoint(sphere.center) > sphere.radius * 0.9);
 }
 
-const START_DIRECTION = new Vector3(0.75, 0.42, 1).normalize();
-
-export function CameraRig({ bounds, frameKey, settleKey, onReady }: CameraRigProps) {
+export function CameraRig({ bounds, frameKey, held, onReady }: CameraRigProps) {
   const camera = useThree((state) => state.camera) as PerspectiveCamera;
   const size = useThree((state) => state.size);
   const invalidate = useThree((state) => state.invalidate);
   const controls = useRef<ElementRef<typeof OrbitControls>>(null);
+  const gliding = useRef(0);
+  const settled = useRef<Sphere | null>(null);
   const latest = useRef({ bounds, size });
   useLayoutEffect(() => {
     latest.current = { bounds, size };
   }, [bounds, size]);
 
+  const stopGliding = useCallback(() => cancelAnimationFrame(gliding.current), []);
+
   const frame = useCallback(
-    (direction: Vector3) => {
+    (direction: Vector3 | null, glide: boolean) => {
       const { bounds: sphere, size: canvas } = latest.current;
-      if (!sphere || !controls.current) return;
+      const orbit = controls.current;
+      if (!sphere || !orbit) return;
       const radius = Math.max(sphere.radius, 1e-9);
       const halfVertical = ((camera.fov / 2) * Math.PI) / 180;
       const halfHorizontal = Math.atan(Math.tan(halfVertical) * (canvas.width / Math.max(canvas.height, 1)));
-      const distance = (radius / Math.sin(Math.min(halfVertical, halfHorizontal))) * 1.08;
+      const distance = (radius / Math.sin(Math.min(halfVertical, halfHorizontal))) * MARGIN;
+      const towards = direction ?? camera.position.clone().sub(orbit.target).normalize();
+      const end = sphere.center.clone().addScaledVector(towards, distance);
       camera.near = distance / 200;
       camera.far = distance * 40;
-      camera.position.copy(sphere.center).addScaledVector(direction, distance);
       camera.updateProjectionMatrix();
-      controls.current.target.copy(sphere.center);
-      controls.current.minDistance = radius * 0.2;
-      controls.current.maxDistance = distance * 12;
-      controls.current.update();
-      invalidate();
+      orbit.minDistance = radius * 0.2;
+      orbit.maxDistance = distance * 12;
+
+      const startPosition = camera.position.clone();
+      const startTarget = orbit.target.clone();
+      const place = (share: number) => {
+        camera.position.lerpVectors(startPosition, end, share);
+        orbit.target.lerpVectors(startTarget, sphere.center, share);
+        orbit.update();
+        invalidate();
+      };
+      stopGliding();
+      if (!glide || window.matchMedia("(prefers-reduced-motion: reduce)").matches) return place(1);
+      const begun = performance.now();
+      const step = (now: number) => {
+        const time = Math.min(Math.max((now - begun) / GLIDE_MS, 0), 1);
+        place(time * time * (3 - 2 * time));
+        if (time < 1) gliding.current = requestAnimationFrame(step);
+      };
+      gliding.current = requestAnimationFrame(step);
     },
-    [camera, invalidate],
+    [camera, invalidate, stopGliding],
   );
 
   const hasBounds = bounds !== null;
   useEffect(() => {
-    if (hasBounds) frame(START_DIRECTION);
+    if (hasBounds) frame(START_DIRECTION, false);
   }, [frameKey, hasBounds, frame]);
 
+  // A mesh that was all in view and has outgrown it is followed, once the hand is off the slider. A viewer who had
+  // come closer to look at a part is left alone.
   useEffect(() => {
-    const sphere = latest.current.bounds;
-    if (settleKey === "" || !sphere || !controls.current) return;
-    if (!isInView(camera, sphere)) frame(camera.position.clone().sub(controls.current.target).normalize());
-  }, [settleKey, camera, frame]);
+    if (held || bounds === null) return;
+    const before = settled.current;
+    if (before && isInView(camera, before) && !isInView(camera, bounds)) frame(null, true);
+    settled.current = bounds;
+  }, [bounds, held, camera, frame]);
 
   useEffect(() => {
-    const offset = () => camera.position.clone().sub(controls.current!.target);
     const move = (change: (spherical: Spherical) => void) => {
-      if (!controls.current) return;
-      const spherical = new Spherical().setFromVector3(offset());
+      const orbit = controls.current;
+      if (!orbit) return;
+      stopGliding();
+      const spherical = new Spherical().setFromVector3(camera.position.clone().sub(orbit.target));
       change(spherical);
       spherical.makeSafe();
-      camera.position.copy(controls.current.target).add(new Vector3().setFromSpherical(spherical));
-      controls.current.update();
+      camera.position.copy(orbit.target).add(new Vector3().setFromSpherical(spherical));
+      orbit.update();
       invalidate();
     };
     onReady({
-      fit: () => frame(controls.current ? offset().normalize() : START_DIRECTION),
+      fit: () => frame(null, true),
       turn: (azimuth, elevation) =>
         move((spherical) => {
           spherical.theta += azimuth;
@@ -95,7 +122,17 @@ export function CameraRig({ bounds, frameKey, settleKey, onReady }: CameraRigPro
         }),
       zoom: (factor) => move((spherical) => (spherical.radius *= factor)),
     });
-  }, [camera, frame, invalidate, onReady]);
+    return stopGliding;
+  }, [camera, frame, invalidate, onReady, stopGliding]);
 
-  return <OrbitControls ref={controls} makeDefault enableDamping={false} zoomSpeed={0.7} rotateSpeed={0.8} />;
+  return (
+    <OrbitControls
+      ref={controls}
+      makeDefault
+      enableDamping={false}
+      zoomSpeed={0.7}
+      rotateSpeed={0.8}
+      onStart={stopGliding}
+    />
+  );
 }

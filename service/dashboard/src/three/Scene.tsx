@@ -21,6 +21,8 @@ export interface SceneProps {
   showEdges: boolean;
   showGrid: boolean;
   up: UpAxis;
+  /** A control that changes the mesh is being held: the camera stays where it is. */
+  held: boolean;
   onCamera: (commands: CameraCommands) => void;
   /** Called after every change of what is drawn. */
   onDrawn: (subject: string | null) => void;
@@ -30,7 +32,7 @@ export interface SceneProps {
 const Z_UP = new Matrix4().makeRotationX(-Math.PI / 2);
 const Y_UP = new Matrix4();
 
-export function Scene({ layers, palette, showEdges, showGrid, up, onCamera, onDrawn, onError }: SceneProps) {
+export function Scene({ layers, palette, showEdges, showGrid, up, held, onCamera, onDrawn, onError }: SceneProps) {
   const [decoded, setDecoded] = useState<Record<string, Decoded>>({});
   const report = useCallback((id: string, value: Decoded | null) => {
     setDecoded((before) => {
@@ -94,7 +96,7 @@ export function Scene({ layers, palette, showEdges, showGrid, up, onCamera, onDr
           />
         ))}
       </group>
-      <CameraRig bounds={sphere} frameKey={`${subject} ${up}`} settleKey={first?.settle ?? ""} onReady={onCamera} />
+      <CameraRig bounds={sphere} frameKey={`${subject} ${up}`} held={held} onReady={onCamera} />
     </>
   );
 }
@@ -124,8 +126,8 @@ interface LayerSurfaceProps {
 }
 
 function LayerSurface({ layer, palette, showEdges, onDecoded, onError }: LayerSurfaceProps) {
-  const { id, glb, subject, settle = "" } = layer;
-  const decoded = useGeometry(glb, subject, settle, onError);
+  const { id, glb, subject } = layer;
+  const decoded = useGeometry(glb, subject, onError);
   useEffect(() => onDecoded(id, decoded), [id, decoded, onDecoded]);
   useEffect(() => () => onDecoded(id, null), [id, onDecoded]);
   if (!decoded || !layer.visible || layer.opacity <= 0) return null;

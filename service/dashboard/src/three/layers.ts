@@ -10,8 +10,6 @@ export interface Layer {
   glb: ArrayBuffer | undefined;
   /** What the bytes show: the camera is framed anew when the first layer's subject changes, and only then. */
   subject: string;
-  /** When this changes the camera backs off if the mesh has outgrown the view; it never turns or comes closer. */
-  settle?: string;
   visible: boolean;
   /** 0 to 1. */
   opacity: number;

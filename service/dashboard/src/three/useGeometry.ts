@@ -6,14 +6,12 @@ import { loadGlb } from "./loadGlb";
 export interface Decoded {
   geometry: BufferGeometry;
   subject: string;
-  settle: string;
 }
 
 /** The decoded mesh of a layer; the last one stays on stage until the next one is ready. */
 export function useGeometry(
   glb: ArrayBuffer | undefined,
   subject: string,
-  settle: string,
   onError: (error: unknown) => void,
 ): Decoded | null {
   const [decoded, setDecoded] = useState<Decoded | null>(null);
@@ -22,7 +20,7 @@ export function useGeometry(
     if (glb === undefined) return;
     let dropped = false;
     loadGlb(glb).then(
-      (geometry) => (dropped ? geometry.dispose() : setDecoded({ geometry, subject, settle })),
+      (geometry) => (dropped ? geometry.dispose() : setDecoded({ geometry, subject })),
       (error: unknown) => {
         if (!dropped) onError(error);
       },
@@ -30,7 +28,7 @@ export function useGeometry(
     return () => {
       dropped = true;
     };
-  }, [glb, subject, settle, onError]);
+  }, [glb, subject, onError]);
 
   useEffect(() => () => decoded?.geometry.dispose(), [decoded]);
   return decoded;

@@ -1,0 +1,310 @@
+"""The dashboard in Chromium, over a real service and a real worker: what a person sees and does on the page."""
+
+import json
+import os
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import write_lamp_model
+from PIL import Image
+from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
+
+from cli.client import Client, connected
+from cli.local_service import local_service
+from shapewright.mesh import TriangleMesh
+from shapewright.modeling import ProceduralModel, Recorder
+
+pytestmark = pytest.mark.browser
+
+# WebGL is drawn by SwiftShader: the same pictures with and without a graphics card.
+CHROMIUM_ARGUMENTS = [
+    "--no-sandbox",
+    "--disable-background-networking",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+]
+START_TIMEOUT_S = 60.0
+JOB_TIMEOUT_MS = 180_000
+
+
+@dataclass(frozen=True)
+class Site:
+    """A running service with two models and a trained classifier."""
+
+    url: str
+    lamp_id: str
+    lamp: ProceduralModel
+
+
+@pytest.fixture(scope="module")
+def site(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+    if not (repository / "service" / "dashboard" / "dist" / "index.html").is_file():
+        message = "the dashboard is not built: bash scripts/setup test"
+        if os.environ.get("CI") == "true":
+            pytest.fail(message)
+        pytest.skip(message)
+    folder = tmp_path_factory.mktemp("dashboard")
+    lamp_file, crate_file = write_lamp_model(folder), _write_crate_model(folder)
+    with (
+        local_service(folder / "data", port=0, log=folder / "service.log") as document,
+        connected(document["url"], ready_within_s=START_TIMEOUT_S) as client,
+    ):
+        lamp, _ = client.post_document("/v1/models", lamp_file.read_text())
+        crate, _ = client.post_document("/v1/models", crate_file.read_text())
+        _train(client, [lamp["id"], crate["id"]])
+        yield Site(document["url"], lamp["id"], ProceduralModel.load(lamp_file))
+
+
+def _write_crate_model(folder: Path) -> Path:
+    recorder = Recorder("crate", "crate", description="a box of variable height")
+    box = recorder.box(1.0, 1.0, 1.0)
+    recorder.extrude(box.top, 0.5, length="height")
+    recorder.parameter("height", "height", 0.2, 2.0, unit="cm", base_value=50.0)
+    path = folder / "crate.json"
+    recorder.build().save(path)
+    return path
+
+
+def _train(client: Client, model_ids: list[str]) -> None:
+    """Train a classifier that is small but real."""
+    settings = {"variations": 10, "images_per_variation": 2, "epochs": 20}
+    accepted = client.post("/v1/classifiers", {"name": "test", "model_ids": model_ids, "settings": settings})
+    client.follow(accepted["job"])
+
+
+@pytest.fixture(scope="module")
+def browser(chromium_path: Path) -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=chromium_path, args=CHROMIUM_ARGUMENTS)
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture
+def new_page(browser: Browser, site: Site) -> Iterator[Callable[..., Page]]:
+    """A function that opens the dashboard; exceptions on the page fail the test."""
+    contexts = []
+    thrown: list[str] = []
+
+    def open_page(route: str = "", *, width: int = 1280, height: int = 800, scheme: str = "light") -> Page:
+        context = browser.new_context(
+            viewport={"width": width, "height": height},
+            color_scheme=scheme,  # type: ignore[arg-type]
+            reduced_motion="reduce",
+            base_url=site.url,
+        )
+        contexts.append(context)
+        page = context.new_page()
+        page.on("pageerror", lambda error: thrown.append(str(error)))
+        page.goto(f"/{route}")
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert thrown == []
+
+
+@pytest.fixture
+def lamp_file(site: Site, tmp_path: Path) -> Path:
+    """A long, thin lamp, turned, enlarged and moved away."""
+    compiled = site.lamp.compile()
+    mesh: TriangleMesh = compiled.instance(compiled.values_from_mapping({"post_length": 1.6, "post_width": 0.7}))
+    turn = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
+    path = tmp_path / "found lamp.off"
+    mesh.transformed(turn, np.array([3.0, 1.0, 2.0]), 2.5).save(path)
+    return path
+
+
+def _drawn(page: Page, subject: str) -> Locator:
+    """The canvas, once it shows that subject."""
+    stage = page.get_by_test_id("stage-canvas")
+    expect(stage).to_have_attribute("data-subject", re.compile(f"^{subject}"), timeout=30_000)
+    expect(stage.locator("canvas")).to_be_visible()
+    page.wait_for_timeout(200)  # the frame after the change
+    return stage
+
+
+def _picture(stage: Locator, path: Path) -> np.ndarray:
+    """What the view shows, as (height, width, 3) integers; also kept as a file to look at."""
+    stage.locator("canvas").screenshot(path=path)
+    with Image.open(path) as image:
+        return np.asarray(image.convert("RGB")).astype(int)
+
+
+def _changed_share(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.mean(np.abs(a - b).max(axis=2) > 12))
+
+
+def test_a_slider_moves_the_mesh_and_nothing_else(new_page: Callable[..., Page], site: Site, tmp_path: Path) -> None:
+    page = new_page()
+    models = page.get_by_role("region", name="Models")
+    expect(models.get_by_role("link")).to_have_count(2)
+    expect(page.get_by_text("Service ready")).to_be_visible()
+    models.get_by_role("link", name="Lamp").click()
+    expect(models.get_by_role("link", name="Lamp")).to_have_attribute("aria-current", "true")
+
+    stage = _drawn(page, f"model {site.lamp_id}")
+    base = _picture(stage, tmp_path / "base.png")
+    assert len(np.unique(base.reshape(-1, 3), axis=0)) > 200, "WebGL drew nothing"
+
+    slider = page.get_by_role("slider", name="Length of the post")
+    row = page.locator('[data-parameter="post_length"]')
+    expect(row.get_by_role("status")).to_have_text("100 mm")
+    with page.expect_response(lambda answer: answer.url.endswith("/instances")) as answer:
+        slider.press("Home")
+    assert json.loads(answer.value.headers["x-shapewright-values"])["post_length"] == 0.5
+    expect(row.get_by_role("status")).to_have_text("50.0 mm")
+    page.wait_for_timeout(500)
+    short = _picture(stage, tmp_path / "short.png")
+    assert _changed_share(base, short) > 0.01
+
+    # Back at the base every pixel is as before: neither the camera nor the light has moved.
+    page.get_by_role("button", name="Reset", exact=True).click()
+    expect(row.get_by_role("status")).to_have_text("100 mm")
+    page.wait_for_timeout(500)
+    assert _changed_share(base, _picture(stage, tmp_path / "again.png")) < 1e-4
+
+    with page.expect_response(lambda answer: answer.url.endswith("/instances")) as answer:
+        page.get_by_role("button", name="Random variation").click()
+    used = json.loads(answer.value.headers["x-shapewright-values"])["post_length"]
+    shown = row.get_by_role("status")
+    expect(shown).not_to_have_text("100 mm")
+    assert float(shown.inner_text().removesuffix(" mm")) == pytest.approx(100 * used, rel=0.01)
+
+
+def test_thumbnails_come_when_they_are_drawn(new_page: Callable[..., Page]) -> None:
+    page = new_page()
+    page.wait_for_function(
+        "() => { const all = [...document.querySelectorAll('.thumbnail img')];"
+        " return all.length === 2 && all.every((image) => image.naturalWidth > 0); }",
+        timeout=60_000,
+    )
+    expect(page.get_by_test_id("thumbnail-fallback")).to_have_count(0)
+
+
+def test_a_refused_file_says_what_is_wrong_and_where(new_page: Callable[..., Page], tmp_path: Path) -> None:
+    page = new_page()
+    broken = tmp_path / "broken.off"
+    broken.write_text("OFF\nthree four\n")
+    page.get_by_test_id("mesh-file").set_input_files(broken)
+    alert = page.get_by_role("alert")
+    expect(alert).to_contain_text("broken.off")
+    expect(alert).to_contain_text("line 2")
+    alert.get_by_role("button", name="Dismiss").click()
+    expect(alert).to_have_count(0)
+
+
+def test_from_an_unknown_mesh_to_its_parameters(new_page: Callable[..., Page], lamp_file: Path, tmp_path: Path) -> None:
+    page = new_page()
+    streams: list[str] = []
+    page.on(
+        "response",
+        lambda answer: streams.append(answer.headers["content-type"]) if "/events" in answer.url else None,
+    )
+    _drop(page, lamp_file)
+    expect(page.get_by_role("heading", name="found lamp.off").first).to_be_visible()
+    stage = _drawn(page, "mesh ")
+    query_alone = _picture(stage, tmp_path / "query.png")
+
+    page.get_by_role("button", name="Classify", exact=True).click()
+    probabilities = page.get_by_test_id("probabilities")
+    expect(probabilities).to_be_visible(timeout=JOB_TIMEOUT_MS)
+    expect(probabilities.get_by_role("listitem").first).to_contain_text("Lamp")
+    expect(page.get_by_label("Model", exact=True).locator("option:checked")).to_have_text("Lamp (class found)")
+
+    page.get_by_label("Samples").fill("60")
+    page.get_by_role("button", name="Estimate parameters").click()
+    progress = page.get_by_role("progressbar", name="Estimating parameters")
+    expect(progress).to_have_attribute("aria-valuenow", re.compile("[1-9]"), timeout=JOB_TIMEOUT_MS)
+    page.screenshot(path=tmp_path / "progress.png")
+    result = page.get_by_test_id("estimation-result")
+    expect(result).to_be_visible(timeout=JOB_TIMEOUT_MS)
+    expect(progress).to_have_count(0)
+    assert any(kind.startswith("text/event-stream") for kind in streams)
+
+    expect(result.get_by_text(re.compile(r"^Layer [123]$"))).to_be_visible()
+    rows = result.get_by_test_id("parameter-table").get_by_role("row")
+    expect(rows).to_have_count(3)
+    expect(rows.nth(1)).to_contain_text(re.compile(r"Length of the post\s*\d+(\.\d+)? mm"))
+
+    # Both meshes are there: each switch changes the picture.
+    legend = page.get_by_role("list", name="Meshes in the view")
+    page.wait_for_timeout(500)
+    both = _picture(stage, tmp_path / "both.png")
+    assert _changed_share(query_alone, both) > 0.01
+    legend.get_by_role("button", name="Fitted model").click()
+    page.wait_for_timeout(300)
+    without_fit = _picture(stage, tmp_path / "without-fit.png")
+    assert _changed_share(both, without_fit) > 0.01
+    legend.get_by_role("button", name="Query").click()
+    page.wait_for_timeout(300)
+    assert _changed_share(without_fit, _picture(stage, tmp_path / "without-both.png")) > 0.01
+    page.screenshot(path=tmp_path / "result.png")
+
+    # The address leads back to the same result; the parameters open in the model.
+    again = new_page(page.url.split("/", 3)[3])
+    expect(again.get_by_test_id("parameter-table")).to_be_visible()
+    again.get_by_role("link", name="Open in model").click()
+    _drawn(again, "model ")
+    expect(again.locator('[data-parameter="post_length"]').get_by_role("status")).not_to_have_text("100 mm")
+
+
+def test_an_estimation_can_be_cancelled(new_page: Callable[..., Page], lamp_file: Path) -> None:
+    page = new_page()
+    page.get_by_test_id("mesh-file").set_input_files(lamp_file)
+    expect(page.get_by_role("heading", name="found lamp.off").first).to_be_visible()
+    again = page.get_by_role("button", name="Estimate again")
+    start = page.get_by_role("button", name="Estimate parameters")
+    expect(again.or_(start)).to_be_visible()
+    if again.is_visible():
+        again.click()
+    page.get_by_label("Samples").fill("100000")
+    start.click()
+    job = page.get_by_test_id("job-progress")
+    expect(job).to_have_attribute("data-state", "running", timeout=JOB_TIMEOUT_MS)
+    job.get_by_role("button", name="Cancel").click()
+    expect(page.get_by_text(re.compile("was cancelled"))).to_be_visible(timeout=JOB_TIMEOUT_MS)
+    expect(job).to_have_count(0)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_page_fits_a_phone(new_page: Callable[..., Page], site: Site, scheme: str, tmp_path: Path) -> None:
+    page = new_page(f"#/models/{site.lamp_id}", width=390, height=844, scheme=scheme)
+    _drawn(page, "model ")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    background = page.evaluate("getComputedStyle(document.documentElement).backgroundColor")
+    brightness = float(np.mean([int(number) for number in re.findall(r"\d+", background)[:3]]))
+    assert (brightness > 128) == (scheme == "light")
+    page.screenshot(path=tmp_path / "phone.png", full_page=True)
+
+
+def test_the_view_turns_from_the_keyboard(new_page: Callable[..., Page], site: Site, tmp_path: Path) -> None:
+    page = new_page(f"#/models/{site.lamp_id}")
+    stage = _drawn(page, "model ")
+    before = _picture(stage, tmp_path / "before.png")
+    stage.focus()
+    for _ in range(4):
+        page.keyboard.press("ArrowRight")
+    page.wait_for_timeout(300)
+    assert _changed_share(before, _picture(stage, tmp_path / "after.png")) > 0.01
+
+
+def _drop(page: Page, path: Path) -> None:
+    """Drop a file on the page as a browser does."""
+    transfer = page.evaluate_handle(
+        """([name, text]) => {
+            const transfer = new DataTransfer();
+            transfer.items.add(new File([text], name));
+            return transfer;
+        }""",
+        [path.name, path.read_text()],
+    )
+    for event in ("dragenter", "dragover", "drop"):
+        page.dispatch_event("body", event, {"dataTransfer": transfer})
