@@ -7,8 +7,9 @@ end, and one that fails leaves nothing behind.
 import re
 import shutil
 import tempfile
+from datetime import timedelta
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 from urllib.parse import unquote, urlsplit
 
 import obstore
@@ -17,7 +18,11 @@ from obstore.store import LocalStore, MemoryStore, ObjectStore, from_url
 
 from models_store.errors import ArtifactError, ArtifactNotFoundError
 
+if TYPE_CHECKING:
+    from obstore.store import RetryConfig
+
 _KEY: Final = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9_.-]*(/[A-Za-z0-9_-][A-Za-z0-9_.-]*)*")
+_RETRY: "Final[RetryConfig]" = {"max_retries": 4, "retry_timeout": timedelta(seconds=30)}
 _NO_SPACE: Final = ("No space left", "StorageFull", "os error 28", "os error 122", "os error 27", "QuotaExceeded")
 
 
@@ -47,7 +52,7 @@ class ArtifactStore:
                 folder = Path(unquote(urlsplit(url).path) if scheme else url).absolute()
                 folder.mkdir(parents=True, exist_ok=True)
                 return cls(LocalStore(folder), folder)
-            return cls(from_url(url))
+            return cls(from_url(url, retry_config=_RETRY))
         except (BaseError, OSError, ValueError) as error:
             raise ArtifactError(f"cannot open the artefact store {url!r}: {error}") from error
 

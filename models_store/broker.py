@@ -62,7 +62,7 @@ def celery_options(settings: StoreSettings) -> dict[str, Any]:
     folder = settings.embedded_broker_folder
     if folder is not None:
         file_transport.register()
-        options["broker_url"] = f"{file_transport.SCHEME}://"
+        options["broker_url"] = f"{file_transport.SCHEME}://localhost//"
         options["broker_transport_options"] = {"folder": str(folder), **patience}
         options["worker_enable_remote_control"] = False  # the folder has no broadcast
         return options

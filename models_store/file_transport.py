@@ -22,6 +22,7 @@ log = logging.getLogger(__name__)
 
 SCHEME: Final = "shapewright-folder"
 POLLING_INTERVAL_S: Final = 0.2
+_LONGEST_WAIT_S: Final = 0.5
 _QUEUE_NAME: Final = re.compile(r"[A-Za-z0-9@_-][A-Za-z0-9@._-]*")
 
 
@@ -99,6 +100,11 @@ class Transport(virtual.Transport):
     polling_interval = POLLING_INTERVAL_S
     connection_errors: tuple[Any, ...] = (*virtual.Transport.connection_errors, OSError)
     implements = virtual.Transport.implements.extend(asynchronous=False, exchange_type=frozenset({"direct"}))
+
+    def drain_events(self, connection: Any, timeout: Any = None) -> Any:  # type: ignore[override]
+        """Wait for one message, but never so long that a worker is slow to notice that it shall stop."""
+        timeout = min(timeout or _LONGEST_WAIT_S, _LONGEST_WAIT_S)
+        return super().drain_events(connection, timeout=timeout)  # type: ignore[no-untyped-call]
 
     def driver_version(self) -> str:
         """There is no driver."""

@@ -15,6 +15,8 @@ from models_store import claims
 from models_store.artifacts import ArtifactStore
 from models_store.claims import Claim, JobError
 from models_store.errors import ArtifactError, StaleClaim
+from models_store.job_kinds import JobState
+from models_store.jobs import get_job
 from models_store.session import Database
 from shapewright.errors import Cancelled, ShapewrightError
 from workers.context import JobContext, Outcome, WorkerProgress, utc_now
@@ -79,21 +81,19 @@ class Runner:
         log.info("job started")
         started = time.perf_counter()
         outcome: Outcome | None = None
-        kept = False
+        end = "lost"
         try:
             with WorkerProgress(self._database, held, self._settings, self._stop_notice, self._clock) as progress:
                 context = JobContext(held, self._database, self._artifacts, self._settings, progress)
-                end, outcome = self._carry_out(context)
-                self._write(end)
-                kept = True
+                write, outcome = self._carry_out(context)
+                end = self._write(held, write).value
         except StaleClaim:
             log.warning("the job belongs to somebody else now, nothing was written")
-        except SQLAlchemyError as error:
-            log.warning("the end of the job could not be written, it will be tried again", error=str(error))
-        finally:
-            if outcome is not None and not kept:
+            if outcome is not None:
                 self._remove(outcome.artifacts)
-        log.info("job left", seconds=round(time.perf_counter() - started, 3))
+        except SQLAlchemyError as error:  # the artefacts stay: the last try may have been written after all
+            log.warning("database away, the lease will run out", error=str(error))
+        log.info("job left", state=end, seconds=round(time.perf_counter() - started, 3))
 
     def _carry_out(self, context: JobContext) -> tuple[Callable[[Session], None], Outcome | None]:
         """Run the task. Returns what is to be written at its end, and its outcome if it has one."""
@@ -129,17 +129,22 @@ class Runner:
 
         return end, outcome
 
-    def _write(self, end: Callable[[Session], None]) -> None:
+    def _write(self, held: Claim, end: Callable[[Session], None]) -> JobState:
         """Write the end of the job, patiently: the work of an hour must not be lost with a short outage."""
         give_up_at = time.monotonic() + self._settings.result_patience_s
+        unsure = False
         while True:
             try:
                 with self._database.writing() as session:
-                    end(session)
-                return
+                    row = get_job(session, held.job_id)
+                    if not (unsure and row.token == held.token and row.state.is_final):
+                        end(session)
+                    # else the connection broke after the commit of an earlier try, and before its answer
+                return row.state
             except SQLAlchemyError as error:
                 if time.monotonic() >= give_up_at:
                     raise
+                unsure = True
                 log.warning("database away, result waits", error=str(error))
                 time.sleep(_RETRY_S)
 

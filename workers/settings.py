@@ -27,7 +27,7 @@ class WorkerSettings(StoreSettings):
     sweep_interval_s: float = Field(default=2.0, gt=0)
     progress_interval_s: float = Field(default=0.5, gt=0)
     cancel_check_s: float = Field(default=1.0, gt=0)
-    shutdown_grace_s: float = Field(default=5.0, ge=0)
+    shutdown_grace_s: float = Field(default=3.0, ge=0)
     result_patience_s: float = Field(default=60.0, ge=0)
     retry_delay_s: float = Field(default=5.0, ge=0)
     metrics_port: int | None = Field(default=None, ge=1, le=65535)

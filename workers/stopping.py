@@ -1,7 +1,6 @@
 """How a worker's children learn that it is about to stop."""
 
 import mmap
-import os
 import struct
 import time
 from typing import Final
@@ -22,7 +21,6 @@ class StopNotice:
 
     def __init__(self) -> None:
         self._memory = mmap.mmap(-1, _DEADLINE.size)
-        self._owner = os.getpid()
 
     def announce(self, grace_s: float) -> None:
         """Tell that work must end within ``grace_s``; only the first call counts."""
@@ -31,10 +29,9 @@ class StopNotice:
 
     @property
     def is_due(self) -> bool:
-        """Whether the time is over, or the worker that this child belongs to is gone."""
-        orphaned = os.getpid() != self._owner and os.getppid() != self._owner
+        """Whether the time is over."""
         deadline = self._read()
-        return orphaned or (deadline > 0 and time.monotonic() >= deadline)
+        return deadline > 0 and time.monotonic() >= deadline
 
     def _read(self) -> float:
         return float(_DEADLINE.unpack_from(self._memory, 0)[0])

@@ -144,9 +144,14 @@ def test_results_of_a_stale_claim_are_rolled_back(desk: Desk) -> None:
     old = desk.claim(job_id)
     desk.clock.forward(31)
     desk.sweep()
-    with pytest.raises(StaleClaim), desk.database.writing() as session:
-        get_job(session, other).progress_message = "written by a stale worker"
-        claims.finish(session, old, now=desk.clock.now)
+
+    def write_all() -> None:
+        with desk.database.writing() as session:
+            get_job(session, other).progress_message = "written by a stale worker"
+            claims.finish(session, old, now=desk.clock.now)
+
+    with pytest.raises(StaleClaim):
+        write_all()
     assert desk.get(other).progress_message == ""
 
 
