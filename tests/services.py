@@ -115,9 +115,7 @@ class PostgresServer:
             try:
                 owner = pwd.getpwnam("postgres").pw_name
             except KeyError:
-                raise ServiceMissingError(
-                    "PostgreSQL cannot run as root and there is no user 'postgres'"
-                ) from None
+                raise ServiceMissingError("PostgreSQL cannot run as root and there is no user 'postgres'") from None
         folder = Path(tempfile.mkdtemp(prefix="shapewright-postgres-"))
         try:
             if owner:
@@ -161,9 +159,7 @@ class PostgresServer:
         return running
 
     def _connect(self) -> "psycopg.Connection[tuple[object, ...]]":
-        return psycopg.connect(
-            host="127.0.0.1", port=self.port, user="shapewright", dbname="postgres", autocommit=True
-        )
+        return psycopg.connect(host="127.0.0.1", port=self.port, user="shapewright", dbname="postgres", autocommit=True)
 
     def _probe(self) -> None:
         self._connect().close()

@@ -49,17 +49,6 @@ def test_an_unknown_verb_is_one_line() -> None:
 
 def test_help_loads_nothing_heavy() -> None:
     heavy = ("numpy", "trimesh", "scipy", "torch", "numba", "onnxruntime", "moderngl", "fastapi", "celery")
-        "numpy",
-        "trimesh",
-        "scipy",
-        "torch",
-        "numba",
-        "onnxruntime",
-        "moderngl",
-        "fastapi",
-        "celery",
-        "sqlalchemy",
-    )
     program = (
         "import sys\n"
         "sys.argv = ['shapewright', '--help']\n"
