@@ -95,7 +95,6 @@ def library_models(repository: Path) -> "dict[str, ProceduralModel]":
     from shapewright.modeling import ProceduralModel
 
     models = (
-        ProceduralModel.load(path)
-        for path in sorted((repository / "models_store" / "library").glob("*/model.json"))
+        ProceduralModel.load(path) for path in sorted((repository / "models_store" / "library").glob("*/model.json"))
     )
     return {model.name: model for model in models}
