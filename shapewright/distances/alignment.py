@@ -178,13 +178,14 @@ def realign(
         if candidate is not None:
             measured = distance(candidate.apply(points))
             probes += 1
-            if measured < best:
+            if measured < best - _NOISE * abs(best):
                 pose, best = candidate, measured
                 refused, back = 0, move ^ 1
         move = (move + 1) % _MOVES
     return Alignment(pose, best, probes)
 
 
+_NOISE = 1e-12  # of the distance: less is rounding, and would let a search drift on a plateau
 _MOVES = 14  # both directions of three translations, three rotations and the scale
 
 
@@ -211,18 +212,30 @@ def _moved(
 ) -> Pose | None:
     """The pose after one step; None if the step leaves the limits of the scale."""
     coordinate, direction = divmod(move, 2)
+    sign = 1 - 2 * direction
+    rotation, translation, scale = pose.rotation, pose.translation, pose.scale
     if coordinate < 3:
-        translation = pose.translation.copy()
-        translation[coordinate] += settings.translation_step * (1 - 2 * direction)
-        return Pose(pose.rotation, translation, pose.scale)
+        translation = translation.copy()
+        translation[coordinate] += sign * settings.translation_step
+        return _unchecked(rotation, translation, scale)
     pivot = pose.apply(mean)
     if coordinate < 6:
-        rotation = turns[coordinate - 3, direction] @ pose.rotation
-        left, _, right = np.linalg.svd(rotation)  # thousands of products must not add up to a shear
-        rotation = left @ right
-        return Pose(rotation, pivot - pose.scale * (rotation @ mean), pose.scale)
-    low, high = settings.scale_limits
-    scale = pose.scale + settings.scale_step * unit * (1 - 2 * direction)
-    if not low * unit * (1 - 1e-9) <= scale <= high * unit * (1 + 1e-9):
-        return None
-    return Pose(pose.rotation, pivot - scale * (pose.rotation @ mean), scale)
+        rotation = turns[coordinate - 3, direction] @ rotation
+    else:
+        low, high = settings.scale_limits
+        scale += sign * settings.scale_step * unit
+        if not low * unit * (1 - 1e-9) <= scale <= high * unit * (1 + 1e-9):
+            return None
+    return _unchecked(rotation, pivot - scale * (rotation @ mean), scale)
+
+
+def _unchecked(rotation: Float[np.ndarray, "3 3"], translation: Float[np.ndarray, " 3"], scale: float) -> Pose:
+    """A pose whose parts are known to be right; probes are many, and the checks would cost as much as some of them.
+
+    Products of rotations lose orthogonality by rounding alone, 1e-12 after a million steps.
+    """
+    pose = object.__new__(Pose)
+    object.__setattr__(pose, "rotation", rotation)
+    object.__setattr__(pose, "translation", translation)
+    object.__setattr__(pose, "scale", scale)
+    return pose

@@ -1,5 +1,7 @@
 """Compiled kernels of the depth images and of the z-buffer distance.
 
+They release the interpreter's lock and leave threads to :mod:`shapewright.distances.rasterize`.
+
 They share one file on purpose: numba's cache looks at the date of the file a kernel stands in, not at those
 of the kernels that it calls, so a caller elsewhere would go on running an old copy.
 """
@@ -7,7 +9,7 @@ of the kernels that it calls, so a caller elsewhere would go on running an old c
 from typing import Final, no_type_check
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 WINDOW: Final = 2.0
 """Half the side of the viewing window, in the units of the points."""
@@ -24,7 +26,7 @@ _FARTHEST_SNAP: Final = float(1 << 28)  # 256 windows of 256 pixels away: produc
 _WIDE: Final = 12  # from this many pixels on it pays to solve for the covered span of a row
 
 
-@njit(cache=True, inline="never")
+@njit(cache=True, nogil=True)
 @no_type_check
 def project(points, frame, size, columns, rows, depths):
     """Project points into one pass; the snapped pixel coordinates are relative to the middle of the window.
@@ -51,7 +53,7 @@ def project(points, frame, size, columns, rows, depths):
     return first_column, last_column, first_row, last_row
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, nogil=True, inline="always")
 @no_type_check
 def pixel_range(low, high, size):
     """First and last pixel of the image with its centre within [low, high] (subpixels about the middle)."""
@@ -61,7 +63,7 @@ def pixel_range(low, high, size):
     return max(first, 0), min(last, size - 1)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, nogil=True, inline="always")
 @no_type_check
 def _narrow(value, step, first, last):
     """Cut the steps ``first..last`` to those at which ``value + k * step >= 0`` holds."""
@@ -75,7 +77,7 @@ def _narrow(value, step, first, last):
     return first, last
 
 
-@njit(cache=True, inline="never")
+@njit(cache=True, nogil=True)
 @no_type_check
 def fill(columns, rows, depths, triangles, size, front, back):
     """Draw triangles: ``front`` keeps each pixel's smallest depth, ``back`` the smallest negated depth."""
@@ -131,11 +133,11 @@ def fill(columns, rows, depths, triangles, size, front, back):
             row_c += up_c
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, nogil=True)
 @no_type_check
-def draw_passes(points, triangles, frames, views):
-    """Fill ``views`` (two a pass, float32) with the depths along and against each viewing direction."""
-    for k in prange(frames.shape[0]):
+def draw_passes(points, triangles, frames, first, last, views):
+    """Fill ``views`` (float32, two a pass) with depths, for passes ``first`` to before ``last``."""
+    for k in range(first, last):
         size = views.shape[1]
         columns = np.empty(points.shape[0], dtype=np.int64)
         rows = np.empty(points.shape[0], dtype=np.int64)
@@ -146,11 +148,11 @@ def draw_passes(points, triangles, frames, views):
         fill(columns, rows, depths, triangles, size, views[2 * k], views[2 * k + 1])
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, nogil=True)
 @no_type_check
-def compare_passes(points, triangles, frames, query_views, query_covered, sums):
-    """For each pass: the raw sum over its two views, and their pixels that either object covers."""
-    for k in prange(frames.shape[0]):
+def compare_passes(points, triangles, frames, query_views, query_covered, first, last, sums):
+    """For passes ``first`` to before ``last``: the raw sum over its two views, and the pixels that either covers."""
+    for k in range(first, last):
         size = query_views.shape[1]
         columns = np.empty(points.shape[0], dtype=np.int64)
         rows = np.empty(points.shape[0], dtype=np.int64)

@@ -6,7 +6,8 @@ import numpy as np
 from jaxtyping import Float, Float32, Int
 
 from shapewright.distances.depth_kernels import OVERSIZE_PENALTY, UNDERSIZE_PENALTY, compare_passes
-from shapewright.distances.rasterize import PASS_FRAMES, check_size, depth_views, prepared
+from shapewright.distances.rasterize import PASS_FRAMES, check_size, depth_views, prepared, share_passes
+from shapewright.errors import EstimationError
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class ZBufferDistance:
 
 
 def zbuffer_distance(
-    query_views: Float32[np.ndarray, "14 S S"], generated_views: Float32[np.ndarray, "14 S S"]
+    query_views: Float32[np.ndarray, "14 S S"], generated_views: Float32[np.ndarray, "14 T T"]
 ) -> ZBufferDistance:
     """Compare depth images pixel by pixel, as in Algorithm 1; not symmetric.
 
@@ -34,10 +35,10 @@ def zbuffer_distance(
         generated_views: the generated object, in the same form and size.
 
     Raises:
-        ValueError: the images differ in shape.
+        EstimationError: the images differ in shape.
     """
     if query_views.shape != generated_views.shape:
-        raise ValueError(f"depth images differ in shape: {query_views.shape} and {generated_views.shape}")
+        raise EstimationError(f"depth images differ in shape: {query_views.shape} and {generated_views.shape}")
     original = np.isfinite(query_views)
     generated = np.isfinite(generated_views)
     both = original & generated
@@ -63,7 +64,7 @@ class ZBufferTarget:
         size: pixels along each side of the images, even.
 
     Raises:
-        ValueError: ``size`` is odd or below 2.
+        EstimationError: ``size`` is odd or below 2.
     """
 
     def __init__(self, vertices: Float[np.ndarray, "V 3"], triangles: Int[np.ndarray, "F 3"], size: int = 256) -> None:
@@ -75,6 +76,9 @@ class ZBufferTarget:
         """Distance of a generated object to the query, both in the same coordinates."""
         points, indices = prepared(vertices, triangles)
         sums = np.empty((len(PASS_FRAMES), 2))
-        compare_passes(points, indices, PASS_FRAMES, self.views, self._covered, sums)
+        views, covered_by_query = self.views, self._covered
+        share_passes(
+            lambda first, last: compare_passes(points, indices, PASS_FRAMES, views, covered_by_query, first, last, sums)
+        )
         raw, covered = sums.sum(axis=0)
         return ZBufferDistance(float(raw / covered) if covered else 0.0, float(raw))

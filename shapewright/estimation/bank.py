@@ -38,7 +38,7 @@ class PanoramaBank:
     """
 
     values: Float[np.ndarray, "N P"]
-    descriptors: Float32[np.ndarray, "N D"]
+    descriptors: Float32[np.ndarray, "M D"]
     model_digest: str
     subdivision_steps: int = 2
 

@@ -1,11 +1,12 @@
 """What an estimator asks of a model: :class:`shapewright.modeling.CompiledModel` has it, a test's box too."""
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Int
 
 
+@runtime_checkable
 class ParameterInfo(Protocol):
     """What people are told about a parameter."""
 
@@ -34,6 +35,7 @@ class ParameterInfo(Protocol):
         """Largest x."""
 
 
+@runtime_checkable
 class ModelInfo(Protocol):
     """What tells one model from another."""
 
@@ -46,6 +48,7 @@ class ModelInfo(Protocol):
         """In the order of the columns of values."""
 
 
+@runtime_checkable
 class InstanceGenerator(Protocol):
     """Generates instances that all share one topology."""
 
