@@ -1,6 +1,7 @@
 """Artefacts are there as a whole or not at all, in every kind of store."""
 
 import http.server
+import re
 import subprocess
 import sys
 import threading
