@@ -82,14 +82,18 @@ def build_scene(
     if isinstance(vertices, np.ndarray):
         assert triangles is not None
         chosen = vertices[used[0] : used[-1] + 1] if used[-1] - used[0] + 1 == len(used) else vertices[used]
-        positions = normalized_positions(chosen).reshape(-1, 3)
+        normalized = normalized_positions(chosen)
+        low, high = normalized.min(axis=1), normalized.max(axis=1)
+        positions = normalized.reshape(-1, 3)
         corners = triangles
         first_vertex = np.arange(len(used)) * chosen.shape[1]
         first_corner = np.zeros(len(used), dtype=np.int64)
         corner_count = np.full(len(used), triangles.size)
     else:
         meshes = [vertices[i] for i in used]
-        positions = np.concatenate([normalized_positions(mesh.vertices[None])[0] for mesh in meshes])
+        parts = [normalized_positions(mesh.vertices[None])[0] for mesh in meshes]
+        low, high = (np.stack([end(part, axis=0) for part in parts]) for end in (np.min, np.max))
+        positions = np.concatenate(parts)
         corners = np.concatenate([mesh.faces for mesh in meshes])
         first_vertex = _offsets([len(mesh.vertices) for mesh in meshes])
         corner_count = np.array([mesh.faces.size for mesh in meshes])
@@ -101,9 +105,8 @@ def build_scene(
         triangles=corners,
         commands=indirect_commands(shown, first_corner, corner_count, first_vertex),
         placements=placements,
-        tiles=np.arange(len(rotations)),
+        rectangles=covered_rectangles(low[shown], high[shown], placements),
         tints=np.ones(len(rotations), dtype=np.int64),
-        tile_count=len(rotations),
     )
 
 
@@ -112,6 +115,16 @@ def normalized_positions(vertices: Float[np.ndarray, "M V 3"]) -> Float[np.ndarr
     centred = vertices - vertices.mean(axis=1, keepdims=True)
     reach = np.abs(centred).max(axis=(1, 2), keepdims=True)
     return np.asarray(centred / np.where(reach > 0, reach, 1.0), dtype=np.float32)
+
+
+def covered_rectangles(
+    low: Float[np.ndarray, "N 3"], high: Float[np.ndarray, "N 3"], placements: Float[np.ndarray, "N 3 4"]
+) -> Float[np.ndarray, "N 4"]:
+    """Left, bottom, right, top of placed boxes with these corners."""
+    centre, half = (low + high) / 2, (high - low) / 2
+    turned = np.einsum("nij,nj->ni", placements[:, :2, :3], centre) + placements[:, :2, 3]
+    reach = np.einsum("nij,nj->ni", np.abs(placements[:, :2, :3]), half)
+    return np.concatenate([turned - reach, turned + reach], axis=1)
 
 
 def _offsets(lengths: Sequence[int] | Int[np.ndarray, " M"]) -> Int[np.ndarray, " M"]:

@@ -110,9 +110,8 @@ def _draw(
                 triangles=triangles,
                 commands=indirect_commands(np.array([number]), starts, sizes, starts),
                 placements=np.concatenate([rotation, np.zeros((3, 1))], axis=1)[None],
-                tiles=np.zeros(1, dtype=np.int64),
+                rectangles=np.array([[-WINDOW, -WINDOW, WINDOW, WINDOW]]),
                 tints=np.array([tint]),
-                tile_count=1,
                 normals=normals,
             )
             renderer.draw(scene, out[number : number + 1], look)

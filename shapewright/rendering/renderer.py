@@ -13,9 +13,9 @@ from jaxtyping import Float, Float32, Int, UInt8
 from shapewright.errors import RenderingError
 from shapewright.rendering.styles import WINDOW, Style
 
-SAMPLE_BYTES = 12
-"""Half floats of the surface (8) and depth (4) that one sample of the atlas takes."""
-MAX_ATLAS_BYTES = 96 * 2**20
+SAMPLE_BYTES = 8
+"""Packed surface (4) and depth (4) that one sample of the atlas takes."""
+MAX_ATLAS_BYTES = 64 * 2**20
 """Bound of the atlas' memory; larger batches are drawn piece by piece."""
 STEP_HEIGHT = 0.05
 """A jump in depth of this size, in the same units, is drawn as an edge."""
@@ -30,10 +30,9 @@ class Scene:
         triangles: corners of all objects, counted from each object's first vertex.
         commands: one row a draw: corners, pictures, first corner, first vertex, first picture (OpenGL's
             ``DrawElementsIndirectCommand``).
-        placements: one row a drawn object: rows of (scale * rotation | translation).
-        tiles: tile of each placement; several objects may share a tile.
-        tints: colour number of each placement, from 1.
-        tile_count: pictures in this batch.
+        placements: one row a picture: rows of (scale * rotation | translation).
+        rectangles: what each picture's object covers at most: left, bottom, right, top after placing.
+        tints: colour number of each picture's object, from 1.
         normals: of each vertex where smooth shading is wanted.
     """
 
@@ -41,9 +40,8 @@ class Scene:
     triangles: Int[np.ndarray, "F 3"]
     commands: Int[np.ndarray, "D 5"]
     placements: Float[np.ndarray, "N 3 4"]
-    tiles: Int[np.ndarray, " N"]
+    rectangles: Float[np.ndarray, "N 4"]
     tints: Int[np.ndarray, " N"]
-    tile_count: int
     normals: Float32[np.ndarray, "V 3"] | None = None
 
 
@@ -90,7 +88,7 @@ class Renderer:
         """Draw one batch and read it back into ``out``, whose rows run from top to bottom."""
         size = out.shape[1]
         side = size * style.oversampling
-        target = self._target_for(size, style.oversampling, scene.tile_count)
+        target = self._target_for(size, style.oversampling, len(out))
         self._draw_surface(scene, target, side, window)
         program = self._program("picture.vert", "edges_common", f"{style.shader}.frag")
         spacing = 2.0 * window / (2 * size)
@@ -104,16 +102,20 @@ class Renderer:
             line_strength=style.line_strength,
             background=style.background,
             colors=style.colors,
+            window=window,
+            tile_count=float(len(out)),
         )
-        viewport = (0, 0, size, size * scene.tile_count)
         target.picture_frame.use()
-        target.picture_frame.viewport = viewport
-        self.context.disable(moderngl.DEPTH_TEST)
+        target.picture_frame.viewport = viewport = (0, 0, size, size * len(out))
+        target.picture_frame.clear(*style.background, viewport=viewport)
+        self.context.enable_only(moderngl.NOTHING)
         target.surface.use(0)
         with ExitStack() as stack:
-            triangle = self.context.vertex_array(program, [])
-            stack.callback(triangle.release)
-            triangle.render(moderngl.TRIANGLES, vertices=3)
+            rectangles = self.context.buffer(scene.rectangles.astype(np.float32))
+            stack.callback(rectangles.release)
+            shown = self.context.vertex_array(program, [(rectangles, "4f/i", "in_rectangle")])
+            stack.callback(shown.release)
+            shown.render(moderngl.TRIANGLE_STRIP, vertices=4, instances=len(out))
         target.picture_frame.read_into(out, viewport=viewport, components=3, alignment=1)
 
     def _draw_surface(self, scene: Scene, target: _Target, side: int, window: float) -> None:
@@ -122,18 +124,18 @@ class Renderer:
         self._set(
             program,
             window=window,
-            tile_count=float(scene.tile_count),
+            tile_count=float(len(scene.placements)),
             samples_per_unit=side / (2.0 * window),
         )
         target.surface_frame.use()
-        target.surface_frame.viewport = viewport = (0, 0, side, side * scene.tile_count)
+        target.surface_frame.viewport = viewport = (0, 0, side, side * len(scene.placements))
         target.surface_frame.clear(0.0, 0.0, 0.0, 0.0, depth=1.0, viewport=viewport)
         self.context.enable_only(moderngl.DEPTH_TEST)
         self.context.enable_direct(0x3000)  # GL_CLIP_DISTANCE0
         self.context.enable_direct(0x3001)
         per_picture = np.empty((len(scene.placements), 14), dtype=np.float32)
         per_picture[:, :12] = scene.placements.reshape(-1, 12)
-        per_picture[:, 12] = scene.tiles
+        per_picture[:, 12] = np.arange(len(scene.placements))
         per_picture[:, 13] = scene.tints
         with ExitStack() as stack:
 
@@ -180,7 +182,7 @@ class Renderer:
             self._target = None
         if self._target is None:
             side = size * oversampling
-            surface = self.context.texture((side, side * tiles), 4, dtype="f2")
+            surface = self.context.texture((side, side * tiles), 4)
             surface.filter = (moderngl.NEAREST, moderngl.NEAREST)
             depth = self.context.depth_renderbuffer((side, side * tiles))
             picture = self.context.renderbuffer((size, size * tiles), 3)

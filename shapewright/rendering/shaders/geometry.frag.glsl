@@ -1,5 +1,6 @@
 #version 430
-// What later passes need of the nearest surface: normal towards the camera (x, y), height, colour number.
+// What later passes need of the nearest surface, packed into 32 bits: normal towards the camera (x, y: 8 bits
+// each), height (14 bits), colour number (2 bits; 0 is the background).
 // The flat normal comes from the slope of the height, so winding cannot matter and sheets have two sides.
 
 in float height;
@@ -18,5 +19,7 @@ void main() {
     vec3 m = dot(normal, n) < 0.0 ? -normal : normal;
     n = dot(m, m) > 1e-12 ? normalize(vec3(m.xy, max(m.z, 1e-3))) : n;
 #endif
-    surface = vec4(n.xy, height, tint);
+    uvec2 direction = uvec2(clamp(n.xy * 127.0 + 128.5, 0.0, 255.0));
+    uint level = uint(clamp(height * 1024.0 + 8192.5, 0.0, 16383.0));
+    surface = unpackUnorm4x8(direction.x | (direction.y << 8) | (level << 16) | (uint(tint + 0.5) << 30));
 }

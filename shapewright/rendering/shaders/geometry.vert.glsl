@@ -7,7 +7,7 @@ in vec3 in_normal;                       // of the corner, any sign
 out vec3 normal;
 #endif
 in vec4 in_row_x, in_row_y, in_row_z;    // one image: rows of (scale * rotation | translation)
-in vec2 in_tile_tint;                    // one image: tile in the atlas; number of the colour
+in vec2 in_tile_tint;                    // one image: its tile in the atlas; number of the colour
 
 uniform float window;                    // half the width of a picture in the units of the rotated object
 uniform float tile_count;

@@ -7,20 +7,24 @@ uniform float line_strength;
 const vec3 KEY = normalize(vec3(-0.45, 0.65, 0.75));
 const vec3 FILL = normalize(vec3(0.85, 0.10, 0.35));
 
-vec3 lit(vec4 s) {
+vec3 lit(uint s) {
     vec3 n = normal_of(s);
     float light = 0.30 + 0.14 * n.y + 0.62 * max(dot(n, KEY), 0.0) + 0.20 * max(dot(n, FILL), 0.0);
-    vec3 color = colors[int(s.w + 0.5) - 1];
+    vec3 color = colors[int(tint_of(s)) - 1];
     return pow(color * color * light, vec3(0.5)) + 0.05 * pow(max(dot(n, normalize(KEY + vec3(0, 0, 1))), 0.0), 24.0);
 }
 
 void main() {
     begin_pixel();
+    bool anything;
+    read_lattice(anything);
+    pixel = vec4(background, 1.0);
+    if (!anything) return;
     vec3 sum = vec3(0.0);
     for (int i = 0; i < oversampling * oversampling; ++i) {
-        vec4 s = sample_at(pixel_corner + ivec2(i % oversampling, i / oversampling));
-        sum += s.w > 0.0 ? lit(s) : background;
+        uint s = packed_at(pixel_corner + ivec2(i % oversampling, i / oversampling));
+        sum += tint_of(s) > 0u ? lit(s) : background;
     }
     vec3 color = sum / float(oversampling * oversampling);
-    pixel = vec4(color * (1.0 - line_strength * edge_darkness()), 1.0);
+    pixel.rgb = color * (1.0 - line_strength * edge_darkness());
 }
