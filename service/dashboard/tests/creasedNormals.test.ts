@@ -50,6 +50,18 @@ describe("normals", () => {
     expect(indexed).toEqual(creasedNormals(soup, null));
   });
 
+  it("of a fan of very many faces take no square of their time", () => {
+    const count = 100_000;
+    const soup = new Float32Array(count * 9);
+    for (let k = 0; k < count; k++) {
+      const angle = (k * 2 * Math.PI) / count;
+      const next = ((k + 1) * 2 * Math.PI) / count;
+      soup.set([0, 0, 0, Math.cos(angle), Math.sin(angle), 0, Math.cos(next), Math.sin(next), 0], k * 9);
+    }
+    const { normals } = creasedNormals(soup, null);
+    expect([...normals.slice(0, 9)]).toEqual([0, 0, 1, 0, 0, 1, 0, 0, 1]);
+  });
+
   it("of faces without area are finite", () => {
     const { normals } = creasedNormals([0, 0, 0, 0, 0, 0, 0, 0, 0], null);
     expect([...normals].every(Number.isFinite)).toBe(true);

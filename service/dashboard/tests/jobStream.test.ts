@@ -43,6 +43,12 @@ describe("the snapshot of a job", () => {
     }
   });
 
+  it("says when it polls, and when even that is not answered", () => {
+    const polled: JobSignal = { type: "job", job: job("running", 0.4) };
+    expect(play({ type: "polling" }, polled, { type: "lost" }).connection).toBe("reconnecting");
+    expect(play({ type: "lost" }, polled)).toMatchObject({ connection: "polling", fraction: 0.4, state: "running" });
+  });
+
   it("keeps fractions between 0 and 1", () => {
     const at = (fraction: number) => play({ type: "progress", sequence: 1, fraction, message: "" }).fraction;
     expect([at(-1), at(2), at(Number.NaN)]).toEqual([0, 1, 0]);
@@ -124,6 +130,7 @@ describe("following a job", () => {
     expect(signals).toEqual([
       { type: "polling" },
       { type: "job", job: job("running", 0.4) },
+      { type: "lost" },
       { type: "job", job: job("failed") },
     ]);
     expect(vi.getTimerCount()).toBe(0);

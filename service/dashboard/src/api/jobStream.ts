@@ -67,7 +67,7 @@ export function reduceJob(snapshot: JobSnapshot, signal: JobSignal): JobSnapshot
         state: job.state,
         fraction: job.state === "succeeded" ? 1 : clampFraction(job.progress?.fraction ?? snapshot.fraction),
         message: job.progress?.message ?? snapshot.message,
-        connection: isTerminal(job.state) ? "closed" : snapshot.connection,
+        connection: isTerminal(job.state) ? "closed" : "polling", // only polls bring whole jobs
       };
     }
   }
@@ -118,7 +118,7 @@ export function watchJob(options: JobWatchOptions): () => void {
       onSignal({ type: "job", job });
       if (isTerminal(job.state)) return stop();
     } catch {
-      // The service is away: the next round tries again.
+      if (!stopped) onSignal({ type: "lost" }); // the next round tries again
     }
     if (!stopped) timer = setTimeout(() => void poll(), pollInterval_ms);
   };

@@ -734,6 +734,11 @@ export interface components {
              * @description False if it was cancelled: the best so far.
              */
             complete: boolean;
+            /**
+             * Values
+             * @description x in the order of the model's parameters.
+             */
+            values: number[];
             /** Parameters */
             parameters: components["schemas"]["ParameterEstimateOut"][];
             distances: components["schemas"]["DistancesOut"];
@@ -763,12 +768,27 @@ export interface components {
              * @description Pixels of a depth view's side.
              */
             image_size?: number | null;
+            /**
+             * Subdivision Steps
+             * @description Catmull–Clark steps of the instances that are compared.
+             */
+            subdivision_steps?: number | null;
             /** Surface Threshold */
             surface_threshold?: number | null;
             /** Zbuffer Threshold */
             zbuffer_threshold?: number | null;
+            /**
+             * Step Sizes
+             * @description Steps of the hill climbing, largest first.
+             */
+            step_sizes?: number[] | null;
             /** Seed */
             seed?: number | null;
+            /**
+             * Estimator
+             * @description Which estimator works; `reference` is the paper, step by step.
+             */
+            estimator?: string | null;
         };
         /**
          * HealthOut
@@ -1320,11 +1340,16 @@ export interface components {
         };
         /**
          * StageOut
-         * @description What one stage of the estimation found.
+         * @description What one of the optimisations found (paper figure 4).
          */
         StageOut: {
             /** Name */
             name: string;
+            /**
+             * Layer
+             * @enum {integer}
+             */
+            layer: 1 | 2 | 3;
             /**
              * Values
              * @description x in the order of the model's parameters.
@@ -1332,6 +1357,11 @@ export interface components {
             values: number[];
             pose: components["schemas"]["PoseOut"];
             distances: components["schemas"]["DistancesOut"];
+            /**
+             * Complete
+             * @description False if it was cancelled in the middle.
+             */
+            complete: boolean;
         };
         /**
          * TrainingSettingsIn
@@ -1351,16 +1381,47 @@ export interface components {
              */
             image_size?: number | null;
             /**
+             * Scale Range
+             * @description Random scales of the object in its pictures: smallest and largest.
+             */
+            scale_range?: [
+                number,
+                number
+            ] | null;
+            /**
              * Held Out
              * @description Share of the variations that measure the accuracy.
              */
             held_out?: number | null;
             /** Epochs */
             epochs?: number | null;
+            /**
+             * Patience
+             * @description Epochs without a better held-out loss after which training stops.
+             */
+            patience?: number | null;
+            /** Learning Rate */
+            learning_rate?: number | null;
+            /** Weight Decay */
+            weight_decay?: number | null;
             /** Batch Size */
             batch_size?: number | null;
             /** Seed */
             seed?: number | null;
+            /** Backbone */
+            backbone?: string | null;
+            /**
+             * Style
+             * @description Look of the pictures.
+             */
+            style?: string | null;
+            /**
+             * Window
+             * @description Half the side of a picture, in units of the scaled object.
+             */
+            window?: number | null;
+            /** Subdivision Steps */
+            subdivision_steps?: number | null;
         };
     };
     responses: never;
@@ -2531,7 +2592,12 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "text/event-stream": string;
+                    "text/event-stream": {
+                        id: string;
+                        /** @enum {string} */
+                        event: "state" | "progress";
+                        data: string;
+                    };
                 };
             };
             /** @description The job has ended and every event was seen: do not reconnect. */

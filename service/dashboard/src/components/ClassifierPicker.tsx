@@ -22,7 +22,7 @@ const EFFORTS = [
 
 type Effort = (typeof EFFORTS)[number];
 
-/** Classifiers that can be used, best first choice on top: the newest that is ready. */
+/** Classifiers that can be used, the newest first. */
 export function usableClassifiers(classifiers: Classifier[] | undefined): Classifier[] {
   return (classifiers ?? [])
     .filter((classifier) => classifier.state === "succeeded")
@@ -43,6 +43,7 @@ export function ClassifierPicker({ selectedId, onSelect }: ClassifierPickerProps
   const showJob = pending !== undefined || live.snapshot.state === "failed";
   const showForm = !pending && (training || (classifiers.isSuccess && usable.length === 0));
   const modelCount = models.data?.length ?? 0;
+  const trainable = new Set(models.data?.map((model) => model.class_name)).size >= 2;
 
   const start = () => {
     train.mutate(
@@ -84,11 +85,11 @@ export function ClassifierPicker({ selectedId, onSelect }: ClassifierPickerProps
         <div className="well">
           <p>
             {usable.length === 0 ? "No classifier yet. " : ""}
-            {modelCount > 0
-              ? `Train one on ${modelCount === 1 ? "the model" : `all ${modelCount} models`}: it learns from random variations alone.`
-              : "Add a model first: a classifier learns from the models alone."}
+            {trainable
+              ? `Train one on all ${modelCount} models: it learns from random variations alone.`
+              : "It tells classes apart and learns from models alone: add models of at least two classes first."}
           </p>
-          <fieldset className="segmented" disabled={modelCount === 0}>
+          <fieldset className="segmented" disabled={!trainable}>
             <legend className="visually-hidden">Training effort</legend>
             {EFFORTS.map((option) => (
               <label key={option.id}>
@@ -108,7 +109,7 @@ export function ClassifierPicker({ selectedId, onSelect }: ClassifierPickerProps
               type="button"
               className="button"
               onClick={start}
-              disabled={modelCount === 0 || train.isPending}
+              disabled={!trainable || train.isPending}
             >
               {train.isPending ? "Starting…" : "Train classifier"}
             </button>

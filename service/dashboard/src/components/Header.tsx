@@ -1,10 +1,12 @@
+import { ApiError } from "../api/problem";
 import { useReady } from "../api/queries";
 
 /** The name of the page and whether the service answers. */
 export function Header() {
-  const { isSuccess, isError, isPending } = useReady();
+  const { isSuccess, isError, isPending, error } = useReady();
   const state = isPending ? "pending" : isSuccess && !isError ? "up" : "down";
-  const text = { pending: "Connecting…", up: "Service ready", down: "Service not ready" }[state];
+  const away = error instanceof ApiError && (error.status === 0 || error.status === 502 || error.status === 504);
+  const text = { pending: "Connecting…", up: "Service ready", down: away ? "Service not reachable" : "Service not ready" }[state];
   return (
     <header className="header">
       <a className="brand" href="#/" aria-label="Shapewright, start page">
