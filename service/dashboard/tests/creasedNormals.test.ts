@@ -59,7 +59,7 @@ describe("normals", () => {
       soup.set([0, 0, 0, Math.cos(angle), Math.sin(angle), 0, Math.cos(next), Math.sin(next), 0], k * 9);
     }
     const { normals } = creasedNormals(soup, null);
-    expect([...normals.slice(0, 9)]).toEqual([0, 0, 1, 0, 0, 1, 0, 0, 1]);
+    expect(Array.from(normals.subarray(0, 9))).toEqual([0, 0, 1, 0, 0, 1, 0, 0, 1]);
   });
 
   it("of faces without area are finite", () => {
