@@ -8,7 +8,7 @@ import typer
 
 from cli.console import AsJson, print_json, shown_progress, stdout
 from cli.report import parameter_table
-from cli.sources import load_model
+from cli.sources import load_model, read_object
 from shapewright.errors import EstimationError, MeshFileError
 
 if TYPE_CHECKING:
@@ -30,7 +30,12 @@ def estimate(
     samples: Annotated[
         int | None, typer.Option(min=1, help="Random instances of layer 1 (default: 10000).", show_default=False)
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of all random choices.")] = 0,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Seed of all random choices (default: 0).", show_default=False)
+    ] = None,
+    settings_file: Annotated[
+        Path | None, typer.Option("--settings", help='JSON file with any of the settings, e.g. {"image_size": 128}.')
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Estimate the parameters of a procedural model so that it rebuilds a mesh.
@@ -50,8 +55,9 @@ def estimate(
 
     compiled = load_model(model).compile()
     query = load_mesh(mesh)
-    chosen: dict[str, Any] = {} if samples is None else {"samples": samples}
-    settings = EstimationSettings(seed=seed, **chosen)
+    chosen = read_object(settings_file) if settings_file is not None else {}
+    chosen |= {name: value for name, value in {"samples": samples, "seed": seed}.items() if value is not None}
+    settings = EstimationSettings.from_dict(chosen)
     started_s = time.monotonic()
     with shown_progress("estimating") as progress:
         estimation = run_estimation(query, compiled, settings, progress=progress)

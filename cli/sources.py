@@ -2,7 +2,7 @@
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import models_store
 from shapewright.errors import ModelError, ParameterError
@@ -41,6 +41,21 @@ def load_models(sources: list[str] | None) -> "list[ProceduralModel]":
     return [load_model(source) for source in (sources or list(library_files()))]
 
 
+def read_object(file: Path) -> dict[str, Any]:
+    """Read a JSON file that holds one object.
+
+    Raises:
+        ParameterError: it does not.
+    """
+    try:
+        loaded = json.loads(file.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise ParameterError(f"not JSON: {error}", where=str(file)) from None
+    if not isinstance(loaded, dict):
+        raise ParameterError("expected a JSON object", where=str(file))
+    return loaded
+
+
 def read_assignments(assignments: list[str] | None, values_file: Path | None) -> dict[str, float]:
     """Read ``name=value`` options on top of a JSON file ``{"name": value}``; values are relative, 1 is the base.
 
@@ -49,13 +64,7 @@ def read_assignments(assignments: list[str] | None, values_file: Path | None) ->
     """
     values: dict[str, float] = {}
     if values_file is not None:
-        try:
-            loaded = json.loads(values_file.read_text(encoding="utf-8"))
-        except ValueError as error:
-            raise ParameterError(f"not JSON: {error}", where=str(values_file)) from None
-        if not isinstance(loaded, dict):
-            raise ParameterError('expected an object {"name": value}', where=str(values_file))
-        for name, value in loaded.items():
+        for name, value in read_object(values_file).items():
             if isinstance(value, bool) or not isinstance(value, int | float):
                 raise ParameterError(f"not a number: {value!r}", where=f"{values_file}: {name}")
             values[name] = float(value)

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from cli.console import AsJson, print_json, shown_progress
-from cli.sources import load_models
+from cli.sources import load_models, read_object
 from shapewright.errors import ClassifierError
 
 
@@ -24,7 +24,13 @@ def train(
         int | None, typer.Option(min=1, help="Images of each variation (default: 10).", show_default=False)
     ] = None,
     epochs: Annotated[int | None, typer.Option(min=1, help="Passes over the images.", show_default=False)] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of variations, views and training.")] = 0,
+    seed: Annotated[
+        int | None,
+        typer.Option(min=0, help="Seed of variations, views and training (default: 0).", show_default=False),
+    ] = None,
+    settings_file: Annotated[
+        Path | None, typer.Option("--settings", help='JSON file with any of the settings, e.g. {"image_size": 160}.')
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Train a classifier with pictures of random variations; models of one class are trained together.
@@ -41,8 +47,13 @@ def train(
     by_class: dict[str, list[Any]] = {}
     for model in load_models(models):
         by_class.setdefault(model.class_name, []).append(model.compile())
-    chosen: dict[str, Any] = {"variations": variations, "images_per_variation": images, "epochs": epochs}
-    settings = TrainingSettings(seed=seed, **{name: value for name, value in chosen.items() if value is not None})
+    options = {"variations": variations, "images_per_variation": images, "epochs": epochs, "seed": seed}
+    chosen = read_object(settings_file) if settings_file is not None else {}
+    chosen |= {name: value for name, value in options.items() if value is not None}
+    try:
+        settings = TrainingSettings(**chosen)
+    except TypeError as error:
+        raise ClassifierError(f"a setting that there is not, or of a wrong type: {error}") from None
     started_s = time.monotonic()
     with shown_progress("training") as progress:
         trained = train_classifier(by_class, settings, progress=progress)

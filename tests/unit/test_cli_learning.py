@@ -1,0 +1,108 @@
+"""`shapewright train`, `classify` and `estimate` on two small models: a lamp and a slab."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import shapewright, write_lamp_model
+from PIL import Image
+
+from shapewright.mesh_file import load_mesh
+from shapewright.modeling import Recorder
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two models, a variation of each, and a classifier that was trained by the command."""
+    folder = tmp_path_factory.mktemp("learning")
+    lamp = write_lamp_model(folder)
+    recorder = Recorder("slab", "slab")
+    slab = recorder.box(2.0, 1.0, 0.1)
+    recorder.extrude(slab.top, 0.1, length="thickness")
+    recorder.parameter("thickness", "thickness", 0.5, 2.0)
+    recorder.build().save(folder / "slab.json")
+    shapewright("instance", lamp, "-o", folder / "query-lamp.off", "--set", "post_length=1.4")
+    shapewright("instance", folder / "slab.json", "-o", folder / "query-slab.obj", "--set", "thickness=1.7")
+    small = folder / "small.json"
+    small.write_text(json.dumps({"image_size": 96, "epochs": 30}))
+    trained = shapewright(
+        "train", lamp, folder / "slab.json", "-o", folder / "out" / "classifier.onnx", "--variations", 12,
+        "--images", 4, "--settings", small, "--json",
+    )  # fmt: skip
+    (folder / "trained.json").write_text(trained.stdout)
+    return folder
+
+
+def test_training_tells_what_it_learned(folder: Path) -> None:
+    document = json.loads((folder / "trained.json").read_text())
+    assert sorted(document["class_names"]) == ["lamp", "slab"]
+    assert Path(document["file"]).stat().st_size > 1_000_000
+    assert document["metrics"]
+    assert document["seconds"] > 0
+
+
+def test_meshes_are_told_apart(folder: Path) -> None:
+    arguments = ("classify", folder / "query-lamp.off", folder / "query-slab.obj", "-c", folder / "out/classifier.onnx")
+    results = shapewright(*arguments, "--views", 6, "--json").document["results"]
+    assert [result["class_name"] for result in results] == ["lamp", "slab"]
+    for result in results:
+        shares = [row["probability"] for row in result["probabilities"]]
+        assert sum(shares) == pytest.approx(1.0, abs=1e-3)
+        assert shares == sorted(shares, reverse=True)
+    table = shapewright(*arguments, "--views", 2).stdout
+    assert "lamp" in table
+    assert "slab" in table
+
+
+def test_a_query_is_rebuilt_where_it_lies(folder: Path, tmp_path: Path) -> None:
+    query = load_mesh(folder / "query-lamp.off")
+    turn = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    placed = query.transformed(turn, np.array([5.0, -3.0, 1.0]), 12.0)
+    placed.save(tmp_path / "placed.ply")
+    small = tmp_path / "small.json"
+    small.write_text(json.dumps({"surface_points": 300, "image_size": 64, "subdivision_steps": 1}))
+    fitted, picture = tmp_path / "results" / "fitted.glb", tmp_path / "results" / "fit.png"
+    document = shapewright(
+        "estimate", tmp_path / "placed.ply", "--model", folder / "lamp.json", "--samples", 30, "--settings", small,
+        "-o", fitted, "--picture", picture, "--json",
+    ).document  # fmt: skip
+    length = next(p for p in document["parameters"] if p["name"] == "post_length")
+    assert length["value"] == pytest.approx(1.4, rel=0.15)
+    assert document["distances"]["surface"] < 0.1
+    assert np.abs(load_mesh(fitted).bounds - placed.bounds).max() < 0.15 * np.ptp(placed.bounds, axis=0).max()
+    with Image.open(picture) as image:
+        assert image.width == 3 * image.height
+    small.write_text('{"surface_points": 50, "image_size": 16, "subdivision_steps": 0, "step_sizes": [0.5]}')
+    printed = shapewright(
+        "estimate", tmp_path / "placed.ply", "-m", folder / "lamp.json", "--samples", 2, "--settings", small
+    )
+    assert "length of the post" in printed.stdout
+    assert "layer" in printed.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("train", "-o", "classifier.pt"), ".onnx"),
+        (("train", "nothing.json", "-o", "c.onnx"), "neither a file nor a shipped model"),
+        (("train", "lamp.json", "-o", "c.onnx", "--settings", "unknown.json"), "colour"),
+        (("train", "lamp.json", "-o", "c.onnx", "--variations", "4"), "class"),
+        (("classify", "query-lamp.off", "-c", "missing.onnx"), "missing.onnx"),
+        (("classify", "query-lamp.off", "-c", "query-lamp.off"), "query-lamp.off"),
+        (("classify", "missing.off", "-c", "out/classifier.onnx"), "missing.off"),
+        (("estimate", "query-lamp.off", "-m", "nothing"), "neither a file nor a shipped model"),
+        (("estimate", "missing.off", "-m", "lamp.json"), "missing.off"),
+        (("estimate", "query-lamp.off", "-m", "lamp.json", "-o", "fit.step"), "write one of"),
+        (("estimate", "query-lamp.off", "-m", "lamp.json", "--picture", "fit.jpg"), ".png"),
+        (("estimate", "query-lamp.off", "-m", "lamp.json", "--settings", "unknown.json"), "colour"),
+    ],
+)
+def test_refusals_leave_nothing_behind(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], told: str
+) -> None:
+    (folder / "unknown.json").write_text('{"colour": "red"}')
+    monkeypatch.chdir(folder)
+    before = sorted(folder.rglob("*"))
+    assert told in shapewright(*arguments).refused()
+    assert sorted(folder.rglob("*")) == before
