@@ -1,4 +1,5 @@
-"""Speed of the distances between meshes: panorama descriptors, the panorama scan and the surface distance.
+"""Speed of the distances between meshes: panorama descriptors, the panorama scan, the surface distance and
+the z-buffer distance.
 
 Run ``.venv/bin/python benchmarks/distances.py``; one JSON document goes to stdout. A further distance adds a
 function that returns its figures, and its line in ``BENCHMARKS``.
@@ -21,7 +22,9 @@ from shapewright.distances.panorama import (
     panorama_descriptors,
     panorama_distances,
 )
+from shapewright.distances.rasterize import depth_views
 from shapewright.distances.surface import SurfaceDistance, poisson_disk_points, surface_distance
+from shapewright.distances.zbuffer import ZBufferTarget, zbuffer_distance
 from shapewright.mesh import TriangleMesh
 
 
@@ -91,7 +94,26 @@ def surface() -> dict[str, float]:
     }
 
 
-BENCHMARKS = {"panorama": panorama, "surface": surface}
+def zbuffer() -> dict[str, float]:
+    ball = trimesh.creation.icosphere(subdivisions=4)
+    triangles = np.array(ball.faces, dtype=np.int64)
+    query = np.array(ball.vertices) * (1.0, 0.8, 0.6)
+    other = query * 1.1 + (0.05, 0.0, -0.05)
+    target = ZBufferTarget(query, triangles)
+    fused = seconds(lambda: target.distance(other, triangles), 30)
+    views = seconds(lambda: depth_views(other, triangles), 30)
+    drawn = depth_views(other, triangles)
+    plain = seconds(lambda: zbuffer_distance(target.views, drawn), 10)
+    return {
+        "triangles": len(triangles),
+        "image_size": target.views.shape[1],
+        "distance_ms": 1e3 * fused,
+        "depth_views_ms": 1e3 * views,
+        "drawn_and_compared_apart_over_fused": (views + plain) / fused,
+    }
+
+
+BENCHMARKS = {"panorama": panorama, "surface": surface, "zbuffer": zbuffer}
 
 
 def main() -> None:
