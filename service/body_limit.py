@@ -1,11 +1,16 @@
 """Request bodies that are too large are refused while they stream in, before anything is kept."""
 
+from typing import Final
+
+import anyio
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.errors import Problem, ProblemError
 from service.settings import ServiceSettings
 
-_MULTIPART_OVERHEAD = 64 * 2**10
+_MULTIPART_OVERHEAD: Final = 64 * 2**10
+_DISCARDED_BYTES: Final = 256 * 2**20
+_DISCARDING_S: Final = 20.0
 
 
 class BodyLimitMiddleware:
@@ -27,6 +32,8 @@ class BodyLimitMiddleware:
         limit = self._limits.get(scope["path"], self._default)
         stated = dict(scope["headers"]).get(b"content-length", b"")
         if stated.isdigit() and int(stated[:20]) > limit:
+            if b"expect" not in dict(scope["headers"]):  # who sends that waits for a word before the body
+                await _discard(receive)
             raise too_large(limit)
         received = 0
 
@@ -36,10 +43,23 @@ class BodyLimitMiddleware:
             if message["type"] == "http.request":
                 received += len(message.get("body", b""))
                 if received > limit:
+                    if message.get("more_body", False):
+                        await _discard(receive)
                     raise too_large(limit)
             return message
 
         await self._app(scope, counted, send)
+
+
+async def _discard(receive: Receive) -> None:
+    """Read on without keeping anything: a client that is cut off while it sends never sees the refusal."""
+    discarded = 0
+    with anyio.move_on_after(_DISCARDING_S):
+        while discarded < _DISCARDED_BYTES:
+            message = await receive()
+            discarded += len(message.get("body", b""))
+            if message["type"] != "http.request" or not message.get("more_body", False):
+                return
 
 
 def too_large(limit: int) -> ProblemError:

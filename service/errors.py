@@ -177,6 +177,10 @@ def http_problem(request: Request, error: StarletteHTTPException) -> Problem:
     slug = title.lower().replace(" ", "-").replace("'", "")
     detail = str(error.detail)
     problem = Problem(error.status_code, slug, title, detail, headers=tuple((error.headers or {}).items()))
+    if error.status_code == 400:  # what the framework says of a body that it cannot take apart
+        unreadable = isinstance(error.__cause__, (UnicodeDecodeError, RecursionError))
+        detail = "the body is not JSON in UTF-8" if unreadable else f"the body cannot be read: {error.detail}"
+        return Problem(422, "request-invalid", "The request does not fit the schema", detail, "body")
     if error.status_code == 404:
         return replace(problem, detail=f"there is nothing at {request.url.path[:500]}")
     if error.status_code == 405:

@@ -11,6 +11,8 @@ from models_store import jobs
 from models_store.session import Database
 from models_store.tables import JobEventRow
 
+_PAGE = 1000
+
 
 def read_events(database: Database, job_id: str, after: int) -> tuple[list[JobEventRow], bool]:
     """The events after a number, and whether no more will come.
@@ -21,8 +23,8 @@ def read_events(database: Database, job_id: str, after: int) -> tuple[list[JobEv
     with database.reading() as session:
         # The state is read first: an event that is written in between then makes one more round, not a gap.
         ended = jobs.get_job(session, job_id).state.is_final
-        events = list(jobs.list_events(session, job_id, after=after))
-    return events, ended and len(events) < 1000
+        events = list(jobs.list_events(session, job_id, after=after, limit=_PAGE))
+    return events, ended and len(events) < _PAGE
 
 
 async def job_events(database: Database, job_id: str, after: int, *, poll_s: float) -> AsyncIterator[ServerSentEvent]:

@@ -3,6 +3,7 @@
 import json
 import socket
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -83,6 +84,14 @@ class LiveService:
         for resource in ("models", "meshes", "classifiers", "classifications", "estimations", "jobs"):
             assert self.client.get(f"/v1/{resource}").json()["items"] == [], resource
         assert self.artifacts() == []
+
+
+def eventually(check: Callable[[], bool]) -> None:
+    """Wait for what is done after an answer."""
+    until = time.monotonic() + 20
+    while not check():
+        assert time.monotonic() < until
+        time.sleep(0.01)
 
 
 @contextmanager

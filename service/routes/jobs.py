@@ -15,6 +15,17 @@ from service.schemas.jobs import JobOut, JobPageOut
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
+_EVENT = {
+    "type": "object",
+    "description": "One event of the stream.",
+    "properties": {
+        "id": {"type": "string", "pattern": "^[0-9]+$"},
+        "event": {"type": "string", "enum": ["state", "progress"]},
+        "data": {"type": "string", "contentMediaType": "application/json"},
+    },
+    "required": ["id", "event", "data"],
+}
+
 
 @router.get("", response_model=JobPageOut, responses=problems(422))
 def list_jobs(
@@ -51,7 +62,7 @@ def cancel_job(services: ServicesDep, id: IdPath) -> Any:  # noqa: A002
         200: {
             "description": "`state` events with the state and the attempt, `progress` events with fraction and "
             "message; the id of an event is its number. The stream ends after the job's last state.",
-            "content": {"text/event-stream": {"schema": {"type": "string"}}},
+            "content": {"text/event-stream": {"schema": _EVENT}},
         },
         204: {"description": "The job has ended and every event was seen: do not reconnect."},
         **problems(404, 422),

@@ -5,8 +5,7 @@ import time
 from typing import Any
 
 import anyio
-from fastapi import APIRouter, Depends, Request, Response
-from starlette.concurrency import run_in_threadpool
+from fastapi import APIRouter, BackgroundTasks, Depends, Request, Response
 
 from models_store import catalog
 from models_store.tables import JobRow, ModelRow
@@ -42,14 +41,14 @@ _DOCUMENT_BODY = {
         **problems(413, 415, 422, 503, 507),
     },
 )
-async def create_model(request: Request, response: Response, services: ServicesDep) -> Any:
+async def create_model(request: Request, response: Response, services: ServicesDep, after: BackgroundTasks) -> Any:
     """Add a procedural model. The same content is the same model, so this can be repeated."""
     body = await request.body()
-    row, job = await run_in_threadpool(_add, services, body)
+    row, job = await anyio.to_thread.run_sync(_add, services, body, limiter=services.instance_limiter)
     response.status_code = 200 if job is None else 201
     response.headers["Location"] = f"/v1/models/{row.id}"
     if job is not None:
-        await run_in_threadpool(services.announce, job)
+        after.add_task(services.announce, job)
     return ModelOut.from_row(row)
 
 

@@ -1,6 +1,6 @@
 """Classifiers and their training."""
 
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, PositiveFloat
 
@@ -35,7 +35,7 @@ class TrainingSettingsIn(InBody):
     batch_size: Annotated[int, Field(ge=1, le=65_536)] | None = None
     seed: Seed | None = None
     backbone: Annotated[str, Field(max_length=100)] | None = None
-    style: Annotated[str, Field(max_length=50)] | None = Field(default=None, description="Look of the pictures.")
+    style: Literal["edges", "shaded"] | None = Field(default=None, description="Look of the pictures.")
     window: Annotated[float, Field(gt=0)] | None = Field(
         default=None, description="Half the side of a picture, in units of the scaled object."
     )

@@ -32,7 +32,7 @@ class EstimationSettingsIn(InBody):
         default=None, description="Steps of the hill climbing, largest first."
     )
     seed: Seed | None = None
-    estimator: Annotated[str, Field(max_length=50)] | None = Field(
+    estimator: Literal["reference"] | None = Field(
         default=None, description="Which estimator works; `reference` is the paper, step by step."
     )
 

@@ -87,6 +87,7 @@ LINK = (
         (tetrahedron(), "mesh", 415, ".off"),
         (b" " * (MAX_BYTES + 1), "large.off", 413, str(MAX_BYTES)),
         (b" " * (MAX_BYTES + 100_000), "larger.off", 413, ""),
+        (b" " * 20_000_000, "huge.off", 413, ""),
     ],
 )
 def test_a_file_that_is_wrong_leaves_nothing(
@@ -122,7 +123,7 @@ def test_a_form_without_the_file_says_what_is_missing(strict_service: LiveServic
     problem(client.post("/v1/meshes", data={"file": "text"}), 422, "file")
     problem(client.post("/v1/meshes", json={"file": "text"}), 422, "file")
     broken = {"Content-Type": "multipart/form-data"}
-    problem(client.post("/v1/meshes", content=b"nothing", headers=broken), 400)
+    problem(client.post("/v1/meshes", content=b"nothing", headers=broken), 422, "body")
     strict_service.assert_nothing_left()
 
 

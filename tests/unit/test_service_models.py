@@ -135,6 +135,8 @@ def test_numbers_that_are_none_are_refused(shared_service: LiveService) -> None:
         problem(shared_service.client.post(url, content=text, headers=JSON), 422, "values.neck_size")
     broken = shared_service.client.post(url, content='{"values": {', headers=JSON)
     assert "broken JSON" in problem(broken, 422)["detail"]
+    for content in (b'{"seed": "\xff"}', b"[" * 100_000):
+        assert "not JSON" in problem(shared_service.client.post(url, content=content, headers=JSON), 422)["detail"]
     problem(shared_service.client.post(url, content="{}", headers={"Content-Type": "text/plain"}), 415)
 
 

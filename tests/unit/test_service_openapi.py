@@ -1,0 +1,132 @@
+"""The published description: it is fresh, it is true, and it offers what the library offers."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import fields
+from typing import get_args
+
+import jsonschema
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, given, settings
+from schemathesis import GenerationMode
+from schemathesis.checks import load_all_checks
+from service_support import LiveService, box, running, tetrahedron
+
+from models_store.job_kinds import JobKind
+from models_store.jobs import TASK_NAMES
+from service.openapi import FOLDER, stale
+from service.schemas.classifiers import TrainingSettingsIn
+from service.schemas.estimations import EstimationSettingsIn
+from service.schemas.jobs import RESULT_PATHS
+from shapewright.classification import TrainingSettings
+from shapewright.estimation import EstimationSettings
+from shapewright.estimation.settings import EstimatorName
+from shapewright.rendering import STYLES
+
+
+def test_the_published_descriptions_are_fresh() -> None:
+    names = [path.name for path in stale()]
+    assert names == [], f"run: python -m service.openapi ({', '.join(names)} is stale)"
+    assert sorted(path.name for path in FOLDER.glob("*.json")) == ["openapi.json", "procedural-model.schema.json"]
+
+
+def test_settings_are_those_of_the_library() -> None:
+    assert set(TrainingSettingsIn.model_fields) == {field.name for field in fields(TrainingSettings)}
+    left_out = {"alignment"}  # steps of the realignment: for those who work in Python
+    assert set(EstimationSettingsIn.model_fields) == {field.name for field in fields(EstimationSettings)} - left_out
+
+
+def test_choices_are_those_of_the_library() -> None:
+    def choices(schema: type[TrainingSettingsIn] | type[EstimationSettingsIn], name: str) -> set[str]:
+        return set(schema.model_json_schema()["properties"][name]["anyOf"][0].get("enum", [])) or {
+            schema.model_json_schema()["properties"][name]["anyOf"][0]["const"]
+        }
+
+    assert choices(TrainingSettingsIn, "style") == set(STYLES)
+    assert choices(EstimationSettingsIn, "estimator") == set(get_args(EstimatorName))
+
+
+def test_the_library_defaults_are_within_the_limits_of_the_service() -> None:
+    training, estimation = TrainingSettings().to_dict(), EstimationSettings().to_dict()
+    estimation.pop("alignment")
+    assert TrainingSettingsIn(**training).checked()["variations"] == 1000
+    assert EstimationSettingsIn(**estimation).checked()["samples"] == 10_000
+
+
+def test_every_kind_of_job_has_a_task_and_a_place_for_its_result() -> None:
+    assert set(TASK_NAMES) == set(RESULT_PATHS) == set(JobKind)
+
+
+@pytest.fixture(scope="module")
+def filled_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveService]:
+    with running(tmp_path_factory.mktemp("fuzzed") / "data", max_mesh_bytes=100_000) as live:
+        yield live
+
+
+@pytest.fixture(scope="module")
+def known_ids(filled_service: LiveService) -> dict[str, str]:
+    """Ids of things that are there, by the first part of their path."""
+    live = filled_service
+    model, crate = live.add_model("box"), live.add_model("crate")
+    mesh = live.upload(tetrahedron()).json()
+    classifier = live.client.post("/v1/classifiers", json={"model_ids": [model["id"], crate["id"]]}).json()
+    estimation = live.client.post("/v1/estimations", json={"mesh_id": mesh["id"], "model_id": model["id"]}).json()
+    live.client.post(f"{estimation['job']['url']}/cancel").raise_for_status()  # so that its stream ends
+    return {
+        "models": model["id"],
+        "meshes": mesh["id"],
+        "classifiers": classifier["id"],
+        "estimations": estimation["id"],
+        "jobs": estimation["job"]["id"],
+    }
+
+
+load_all_checks()
+CHECKS = [
+    check
+    for check in schemathesis.checks.CHECKS.get_all()
+    # A body that fits the schema may still name what is not there, or be a model that is impossible.
+    if check.__name__ != "positive_data_acceptance"
+]
+OPERATIONS = {
+    operation.label: operation
+    for operation in (
+        result.ok() for result in schemathesis.openapi.from_path(FOLDER / "openapi.json").get_all_operations()
+    )
+}
+
+
+CASES = [
+    pytest.param(label, mode, id=f"{label} {mode.value}")
+    for label, operation in sorted(OPERATIONS.items())
+    for mode in GenerationMode
+    # what takes no input cannot be given a wrong one
+    if mode is GenerationMode.POSITIVE or operation.body or list(operation.iter_parameters())
+]
+
+
+@pytest.mark.parametrize(("label", "mode"), CASES)
+def test_whatever_is_sent_the_answer_is_as_described(
+    filled_service: LiveService, known_ids: dict[str, str], label: str, mode: GenerationMode
+) -> None:
+    operation = OPERATIONS[label]
+    base_url = str(filled_service.client.base_url)
+    resource = label.split("/")[2] if "/v1/" in label else ""
+
+    @settings(max_examples=5, derandomize=True, deadline=None, database=None, suppress_health_check=list(HealthCheck))
+    @given(case=operation.as_strategy(generation_mode=mode))
+    def check(case: schemathesis.Case) -> None:
+        case.call_and_validate(base_url=base_url, checks=CHECKS, timeout=20)
+        if "id" in case.path_parameters and resource in known_ids:
+            case.path_parameters["id"] = known_ids[resource]
+            response = case.call(base_url=base_url, timeout=20)
+            assert response.status_code < 500
+            operation.validate_response(response)
+
+    check()
+
+
+def test_a_document_of_ours_fits_the_published_schema() -> None:
+    schema = json.loads((FOLDER / "procedural-model.schema.json").read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator(schema).validate(box())
