@@ -9,7 +9,9 @@ from jaxtyping import Float, UInt8
 from shapewright.classification.backbone import Backbone
 from shapewright.classification.file_format import FEATURES, IMAGES
 
-BATCH_SIZE = 32
+BATCH_SIZE = 10
+"""The views of one object. Larger batches were slower and took more memory: 8, 16 and 32 pictures needed 4.8, 5.0
+and 5.8 ms of processor each."""
 THREADS = 2
 
 
