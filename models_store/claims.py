@@ -3,8 +3,12 @@
 A claim carries the fencing token that its conditional update handed out. Every later write asks for this token
 in its ``WHERE``: a worker that was believed dead, or a second delivery of the same message, changes nothing and
 hears :class:`~models_store.errors.StaleClaim`.
+
+Leases compare the clocks of the machines that work together: they should agree within a few seconds. A clock that
+is wrong costs work that is done twice, never a wrong result.
 """
 
+import math
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
@@ -106,7 +110,7 @@ def report_progress(
     Raises:
         StaleClaim: the job is no longer ours.
     """
-    fraction = min(max(fraction, 0.0), 1.0)
+    fraction = min(max(fraction, 0.0), 1.0) if math.isfinite(fraction) else 0.0
     message = storable(message, limit=500)
     values = {
         "lease_expires_at": now + lease,

@@ -8,9 +8,14 @@ from pathlib import Path
 from typing import Any, Final
 
 from sqlalchemy import Connection, Engine, NullPool, create_engine, event, make_url, text
+from sqlalchemy.exc import InterfaceError, OperationalError
+from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.orm import Session, sessionmaker
 
 from models_store.settings import StoreSettings
+
+OUTAGES: Final = (OperationalError, InterfaceError, PoolTimeoutError)
+"""What SQLAlchemy raises while the database is away (or locked for long): worth another try."""
 
 SQLITE_BUSY_TIMEOUT_S: Final = 30.0
 POSTGRES_CONNECT_TIMEOUT_S: Final = 5

@@ -8,7 +8,6 @@ from datetime import datetime, timedelta
 from typing import Final
 
 import structlog
-from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
 from models_store import claims
@@ -17,7 +16,7 @@ from models_store.claims import Claim, JobError
 from models_store.errors import ArtifactError, StaleClaim
 from models_store.job_kinds import JobState
 from models_store.jobs import get_job
-from models_store.session import Database
+from models_store.session import OUTAGES, Database
 from shapewright.errors import Cancelled, ShapewrightError
 from workers.context import JobContext, Outcome, WorkerProgress, utc_now
 from workers.settings import WorkerSettings
@@ -59,7 +58,7 @@ class Runner:
                 return  # it stays queued for another worker
             try:
                 held = self._claim(job_id)
-            except SQLAlchemyError as error:
+            except OUTAGES as error:
                 log.warning("database away, job stays queued", error=str(error))
                 return
             if held is None:
@@ -86,12 +85,18 @@ class Runner:
             with WorkerProgress(self._database, held, self._settings, self._stop_notice, self._clock) as progress:
                 context = JobContext(held, self._database, self._artifacts, self._settings, progress)
                 write, outcome = self._carry_out(context)
-                end = self._write(held, write).value
+                try:
+                    end = self._write(held, write).value
+                except (StaleClaim, *OUTAGES):
+                    raise
+                except Exception:
+                    log.exception("the result cannot be written")
+                    self._remove(outcome)
+                    end = self._write(held, self._broken(held)).value
         except StaleClaim:
             log.warning("the job belongs to somebody else now, nothing was written")
-            if outcome is not None:
-                self._remove(outcome.artifacts)
-        except SQLAlchemyError as error:  # the artefacts stay: the last try may have been written after all
+            self._remove(outcome)
+        except OUTAGES as error:  # the artefacts stay: the last try may have been written after all
             log.warning("database away, the lease will run out", error=str(error))
         log.info("job left", state=end, seconds=round(time.perf_counter() - started, 3))
 
@@ -100,7 +105,7 @@ class Runner:
         held = context.claim
         try:
             outcome = TASKS[held.kind](context)
-        except (StaleClaim, SQLAlchemyError):
+        except (StaleClaim, *OUTAGES):
             raise
         except WorkerStopping:
             log.info("worker stops, job goes back to the queue")
@@ -114,13 +119,7 @@ class Runner:
             return lambda session: claims.fail(session, held, reason, now=self._clock()), None
         except Exception:
             log.exception("job broke")
-            if held.attempt >= held.max_attempts:
-                return lambda session: claims.fail(session, held, UNEXPECTED, now=self._clock()), None
-            delay = timedelta(seconds=self._settings.retry_delay_s)
-            return (
-                lambda session: claims.release(session, held, now=self._clock(), delay=delay, counted=True),
-                None,
-            )
+            return self._broken(held), None
 
         def end(session: Session) -> None:
             finish = claims.finish_cancelled if outcome.cancelled else claims.finish
@@ -128,6 +127,13 @@ class Runner:
             outcome.record(session)
 
         return end, outcome
+
+    def _broken(self, held: Claim) -> Callable[[Session], None]:
+        """The end of an attempt that broke: the job is tried again, or has failed with its last attempt."""
+        if held.attempt >= held.max_attempts:
+            return lambda session: claims.fail(session, held, UNEXPECTED, now=self._clock())
+        delay = timedelta(seconds=self._settings.retry_delay_s)
+        return lambda session: claims.release(session, held, now=self._clock(), delay=delay, counted=True)
 
     def _write(self, held: Claim, end: Callable[[Session], None]) -> JobState:
         """Write the end of the job, patiently: the work of an hour must not be lost with a short outage."""
@@ -141,19 +147,19 @@ class Runner:
                         end(session)
                     # else the connection broke after the commit of an earlier try, and before its answer
                 return row.state
-            except SQLAlchemyError as error:
+            except OUTAGES as error:
                 if time.monotonic() >= give_up_at:
                     raise
                 unsure = True
                 log.warning("database away, result waits", error=str(error))
                 time.sleep(_RETRY_S)
 
-    def _remove(self, keys: tuple[str, ...]) -> None:
-        for key in keys:
+    def _remove(self, outcome: Outcome | None) -> None:
+        for key in outcome.artifacts if outcome else ():
             try:
                 self._artifacts.delete(key)
             except ArtifactError as error:
-                log.warning("artefact of a lost claim stays behind", key=key, error=str(error))
+                log.warning("artefact without a result stays behind", key=key, error=str(error))
 
 
 def _title(error: ShapewrightError) -> str:

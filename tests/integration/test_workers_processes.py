@@ -6,10 +6,11 @@ import time
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
+from urllib.request import urlopen
 
 import pytest
 from PIL import Image
-from services import RedisServer
+from services import RedisServer, free_port
 from worker_support import Site, brick, children_of, is_alive, now
 
 from models_store import catalog
@@ -40,10 +41,13 @@ def embedded(tmp_path: Path) -> Iterator[Site]:
 
 def test_jobs_are_done_and_leave_their_results(site: Site) -> None:
     model_id = site.add_model(brick())
-    with site.worker():
+    port = free_port()
+    with site.worker(SHAPEWRIGHT_METRICS_PORT=str(port)):
         thumbnail_job = site.wait(site.queue_thumbnail(model_id))
         estimation = site.queue_estimation(200)
         done = site.wait(estimation.job_id)
+        with urlopen(f"http://127.0.0.1:{port}/metrics") as answer:
+            assert b'shapewright_jobs{kind="estimate",state="succeeded"}' in answer.read()
     assert thumbnail_job.state is JobState.SUCCEEDED, thumbnail_job.error_detail
     with site.database.reading() as session:
         key = catalog.get_model(session, model_id).thumbnail_key

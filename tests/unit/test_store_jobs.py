@@ -283,6 +283,8 @@ def test_events_replay_in_order_without_gaps(desk: Desk) -> None:
 def test_texts_that_a_database_cannot_hold_are_cleaned(desk: Desk) -> None:
     job_id = desk.queue()
     held = desk.claim(job_id)
+    desk.report(held, float("nan"), "")
+    assert desk.get(job_id).progress_fraction == 0.0
     desk.report(held, 2.0, "nul \0 and surrogate \ud800")
     desk.fail(held, claims.JobError("t\0", "d\ud800", None))
     assert desk.get(job_id).error_title == "t"

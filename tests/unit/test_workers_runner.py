@@ -145,6 +145,23 @@ def test_an_unexpected_error_is_tried_again_and_tells_nothing_internal(bench: Be
     assert "secret" not in job.error_detail
 
 
+def test_a_result_that_cannot_be_written_is_an_unexpected_error(bench: Bench) -> None:
+    def task(context: JobContext) -> Outcome:
+        context.artifacts.put("a/b", b"result")
+
+        def record(session) -> None:
+            get_job(session, context.claim.job_id).payload = {"not JSON": float("nan")}
+            session.flush()
+
+        return Outcome(record, ("a/b",))
+
+    job_id = bench.run(task)
+    assert (bench.job(job_id).state, bench.job(job_id).attempt) == (JobState.QUEUED, 1)
+    bench.run(task, job_id)
+    assert (bench.job(job_id).state, bench.job(job_id).error_title) == (JobState.FAILED, "Unexpected error")
+    assert not bench.artifacts.exists("a/b")
+
+
 def test_a_cancelled_job_hears_of_it(bench: Bench) -> None:
     def task(context: JobContext) -> Outcome:
         bench.cancel(context.claim.job_id)
