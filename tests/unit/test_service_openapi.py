@@ -6,6 +6,7 @@ from dataclasses import fields
 from typing import get_args
 
 import jsonschema
+import numpy as np
 import pytest
 import schemathesis
 from hypothesis import HealthCheck, given, settings
@@ -17,11 +18,13 @@ from models_store.job_kinds import JobKind
 from models_store.jobs import TASK_NAMES
 from service.openapi import FOLDER, stale
 from service.schemas.classifiers import TrainingSettingsIn
-from service.schemas.estimations import EstimationSettingsIn
+from service.schemas.estimations import EstimationResultOut, EstimationSettingsIn
 from service.schemas.jobs import RESULT_PATHS
 from shapewright.classification import TrainingSettings
-from shapewright.estimation import EstimationSettings
+from shapewright.distances.alignment import Pose
+from shapewright.estimation import Distances, Estimation, EstimationSettings, ParameterEstimate, Stage
 from shapewright.estimation.settings import EstimatorName
+from shapewright.mesh import TriangleMesh
 from shapewright.rendering import STYLES
 
 
@@ -52,6 +55,18 @@ def test_the_library_defaults_are_within_the_limits_of_the_service() -> None:
     estimation.pop("alignment")
     assert TrainingSettingsIn(**training).checked()["variations"] == 1000
     assert EstimationSettingsIn(**estimation).checked()["samples"] == 10_000
+
+
+def test_an_estimation_of_the_library_fits_the_answer() -> None:
+    """Field by field: a new one in the library must not be lost on the way."""
+    values, pose = np.array([1.5]), Pose(np.eye(3), np.zeros(3), 2.0)
+    distances = Distances(3.0, 0.02, 0.3, 900.0)
+    mesh = TriangleMesh(np.eye(4, 3), np.array([[0, 1, 2]]))
+    parameter = ParameterEstimate("height", "height", "cm", 1.5, 45.0, 0.5, 2.0)
+    stage = Stage("panorama", values, pose, distances)
+    estimation = Estimation(1, values, (parameter,), pose, distances, (stage,), mesh)
+    document = {**json.loads(json.dumps(estimation.to_dict())), "seconds": 1.0}
+    assert EstimationResultOut.model_validate(document).model_dump() == document
 
 
 def test_every_kind_of_job_has_a_task_and_a_place_for_its_result() -> None:
