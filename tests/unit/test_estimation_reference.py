@@ -1,6 +1,7 @@
 """The reference estimator from end to end, on a tiny model."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,6 +26,13 @@ SMALL = EstimationSettings(
     image_size=64,
     step_sizes=(0.5, 0.1, 0.02),
     alignment=AlignmentSettings(0.03, 0.03 * np.pi, 0.03),
+)
+COARSE = EstimationSettings(  # where only the course of the work matters
+    samples=60,
+    surface_points=150,
+    image_size=32,
+    step_sizes=(0.5, 0.1),
+    alignment=AlignmentSettings(0.08, 0.05 * np.pi, 0.08),
 )
 TRUTH = np.array([1.35, 0.8])
 TURN = Pose(rotations_24()[14], np.array([40.0, -3.0, 12.0]), 7.5)
@@ -89,10 +97,11 @@ def test_the_answer_is_plain_json_and_names_its_parameters(estimation: Estimatio
     assert set(document["distances"]) == {"panorama", "surface", "zbuffer", "zbuffer_raw"}
 
 
-def test_the_same_seed_gives_the_same_answer(
-    generator: EllGenerator, query: TriangleMesh, bank: PanoramaBank, estimation: Estimation
+def test_the_same_seed_gives_the_same_answer_from_a_mapped_bank_too(
+    generator: EllGenerator, query: TriangleMesh, bank: PanoramaBank, estimation: Estimation, tmp_path: Path
 ) -> None:
-    again = estimate(query, generator, SMALL, bank=bank)
+    bank.save(tmp_path / "bank.npz")
+    again = estimate(query, generator, SMALL, bank=PanoramaBank.load(tmp_path / "bank.npz"))
     assert again.to_dict() == estimation.to_dict()
 
 
@@ -104,13 +113,13 @@ def test_alignment_probes_generate_nothing(generator: EllGenerator, query: Trian
         nonlocal probes
         probes += 1
 
-    estimate(query, generator, SMALL, bank=bank, progress=CallbackProgress(count))
+    estimate(query, generator, COARSE, bank=bank, progress=CallbackProgress(count))
     assert generator.generated < probes  # a realignment of several rounds reports each, and generates once
 
 
 def test_progress_rises_and_tells_layer_and_distance(generator: EllGenerator, query: TriangleMesh) -> None:
     reports: list[tuple[float, str]] = []
-    estimate(query, generator, SMALL, progress=CallbackProgress(lambda *report: reports.append(report)))
+    estimate(query, generator, COARSE, progress=CallbackProgress(lambda *report: reports.append(report)))
     fractions = [fraction for fraction, _ in reports]
     assert fractions == sorted(fractions)
     assert (fractions[0], fractions[-1]) == (0.0, 1.0)
@@ -120,7 +129,7 @@ def test_progress_rises_and_tells_layer_and_distance(generator: EllGenerator, qu
         "layer 1: step 0.5, panorama distance 0.",
         "orientation 24 of 24, surface distance 0.",
         "layer 2: step 0.5, surface distance 0.",
-        "layer 3 after layer 2: step 0.02, z-buffer distance 0.",
+        "layer 3 after layer 2: step 0.1, z-buffer distance 0.",
         "layer 3 after layer 1: step",
     ):
         assert expected in text
@@ -148,7 +157,7 @@ def test_a_cancelled_estimation_keeps_its_best_so_far(
             raise Cancelled
 
     with pytest.raises(EstimationCancelled) as caught:
-        estimate(query, generator, SMALL, bank=bank, progress=CallbackProgress(cancel_in_phase))
+        estimate(query, generator, COARSE, bank=bank, progress=CallbackProgress(cancel_in_phase))
     best = caught.value.best
     assert isinstance(caught.value, Cancelled)
     assert best is not None
@@ -172,11 +181,11 @@ def test_cancelled_while_the_bank_is_built(
 
     monkeypatch.setattr("shapewright.estimation.bank._CHUNK_BYTES", 24 * 20 * 196)
     with pytest.raises(EstimationCancelled) as caught:
-        estimate(query, generator, SMALL, progress=cancel_at("40 of 60"))
+        estimate(query, generator, COARSE, progress=cancel_at("40 of 60"))
     assert caught.value.best is not None
     assert caught.value.best.layer == 1
     with pytest.raises(EstimationCancelled) as caught:
-        estimate(query, generator, SMALL, progress=cancel_at(": 0 of 60"))
+        estimate(query, generator, COARSE, progress=cancel_at(": 0 of 60"))
     assert caught.value.best is None
 
 
