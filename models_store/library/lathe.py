@@ -1,0 +1,40 @@
+"""Modelling aid for round parts: a column of rings, sketched straight first, then given its profile.
+
+A ring's width is set by scaling its vertices about the axis after the whole column stands. So every width and every
+height is a number of its own: widening the stem of a glass leaves its bowl as it is.
+"""
+
+import math
+
+from shapewright.modeling import Component, Element, Recorder, group
+
+Ring = tuple[Element, ...]
+
+
+class Lathe:
+    """Raises one face of a component ring by ring."""
+
+    def __init__(self, recorder: Recorder, component: Component) -> None:
+        self._recorder = recorder
+        self.face = component.top
+        self.bottom: Ring = tuple(recorder.vertices_of(component.bottom))
+        self.top: Ring = tuple(recorder.vertices_of(component.top))
+
+    def rise(self, by: float, **varies: str) -> Ring:
+        """Extrude by a distance (below 0: back down, for an inner wall) and return the new ring."""
+        self._recorder.extrude(self.face, by, **varies)
+        self.top = tuple(self._recorder.vertices_of(self.face))
+        return self.top
+
+
+def widen(recorder: Recorder, rings: list[Ring], sigma: float, **varies: str) -> None:
+    """Scale rings about their common axis, in the plane across the z axis of the model."""
+    recorder.scale(group(*(vertex for ring in rings for vertex in ring), frame="world"), sigma, "uv", **varies)
+
+
+def control_diameter(diameter: float, sides: int) -> float:
+    """Return the diameter of the regular polygon whose subdivision ends as a circle of this diameter.
+
+    A ring of control vertices ends on the uniform cubic B-spline curve, which lies inside by (2 + cos(2 pi / n)) / 3.
+    """
+    return diameter * 3 / (2 + math.cos(2 * math.pi / sides))

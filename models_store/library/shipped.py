@@ -1,0 +1,49 @@
+"""Finds the procedural models that ship. Reads package files only; loading a document imports the modelling kernel."""
+
+from importlib import resources
+from importlib.resources.abc import Traversable
+from typing import TYPE_CHECKING
+
+from shapewright.errors import ModelError
+
+if TYPE_CHECKING:
+    from shapewright.modeling import ProceduralModel
+
+DOCUMENT = "model.json"
+THUMBNAIL = "thumbnail.png"
+
+
+def list_shipped() -> dict[str, Traversable]:
+    """Return the documents of the shipped models, by name, sorted by name."""
+    folders = resources.files("models_store.library").iterdir()
+    documents = {folder.name: folder / DOCUMENT for folder in folders if folder.is_dir()}
+    return {name: document for name, document in sorted(documents.items()) if document.is_file()}
+
+
+def load_shipped(name: str) -> "ProceduralModel":
+    """Return a shipped procedural model.
+
+    Raises:
+        ModelError: no model of this name ships.
+    """
+    from shapewright.modeling import ProceduralModel
+
+    return ProceduralModel.from_json(_shipped(name).read_bytes())
+
+
+def thumbnail_png(name: str) -> bytes:
+    """Return the picture of a shipped model.
+
+    Raises:
+        ModelError: no model of this name ships.
+    """
+    folder = resources.files("models_store.library") / _shipped(name).parent.name
+    return (folder / THUMBNAIL).read_bytes()
+
+
+def _shipped(name: str) -> Traversable:
+    shipped = list_shipped()
+    if name not in shipped:
+        names = ", ".join(shipped) or "none"
+        raise ModelError(f"no such model ships (these do: {names})", where=repr(name))
+    return shipped[name]
