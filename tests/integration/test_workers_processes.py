@@ -71,7 +71,7 @@ def test_jobs_are_done_and_leave_their_results(site: Site) -> None:
 
 def test_a_job_whose_worker_child_is_killed_is_done_once(site: Site) -> None:
     with site.worker() as worker:
-        estimation = site.queue_estimation(1500)
+        estimation = site.queue_estimation(800)
         site.wait_until_working(estimation.job_id)
         (child,) = children_of(worker)
         os.kill(child, signal.SIGKILL)
@@ -83,7 +83,7 @@ def test_a_job_whose_worker_child_is_killed_is_done_once(site: Site) -> None:
 
 
 def test_a_job_of_a_worker_that_is_killed_is_done_by_the_next(embedded: Site) -> None:
-    estimation = embedded.queue_estimation(1500)
+    estimation = embedded.queue_estimation(800)
     with embedded.worker() as worker:
         embedded.wait_until_working(estimation.job_id)
         children = children_of(worker)
