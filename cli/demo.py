@@ -12,7 +12,7 @@ import typer
 
 from cli.console import AsJson, print_json, shown_progress, stderr, stdout
 from cli.report import parameter_table, probability_table
-from cli.sources import library_files
+from models_store.library.shipped import list_shipped
 from shapewright.errors import ShapewrightError
 
 if TYPE_CHECKING:
@@ -171,8 +171,8 @@ def _walk(
 
 def _upload_models(client: "Client", console: "Console") -> list[Any]:
     models = []
-    for path in library_files().values():
-        model, new = client.post_document("/v1/models", path.read_text(encoding="utf-8"))
+    for document in list_shipped().values():
+        model, new = client.post_document("/v1/models", document.read_text(encoding="utf-8"))
         models.append(model)
         state = "uploaded" if new else "already there"
         console.print(f"   {model['name']}: {len(model['parameters'])} parameters, {state}")

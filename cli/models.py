@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cli.console import AsJson, print_json, stdout
-from cli.sources import library_files, load_model
+from cli.sources import load_model
+from models_store.library.shipped import list_shipped, load_shipped
 from shapewright.errors import ShapewrightError
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ def list_models(as_json: AsJson = False) -> None:
 
     Example:  [bold]shapewright models list --json[/]
     """
-    found = [load_model(name) for name in library_files()]
+    found = [load_shipped(name) for name in list_shipped()]
     if as_json:
         print_json({"models": [_summary(model) for model in found]})
         return

@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from cli.console import AsJson, print_json
-from cli.sources import library_files, load_model, read_assignments
+from cli.sources import load_model, read_assignments
+from models_store.library.shipped import list_shipped
 from shapewright.errors import RenderingError
 
 
@@ -50,7 +51,7 @@ def render(
     from shapewright.mesh_file import load_mesh
     from shapewright.rendering import render_mesh, three_quarter_view
 
-    if source in library_files() or source.endswith(".json"):
+    if source in list_shipped() or source.endswith(".json"):
         compiled = load_model(source).compile()
         mesh = compiled.instance(compiled.values_from_mapping(read_assignments(assignments, None)))
     else:

@@ -107,11 +107,18 @@ def _listen(host: str, port: int) -> socket.socket:
 
 def _make_server(log_level: str) -> "uvicorn.Server":
     import uvicorn
+    from pydantic import ValidationError
 
     from service.app import create_app
 
+    try:
+        app = create_app()
+    except ValidationError as error:
+        first = error.errors()[0]
+        variable = "SHAPEWRIGHT_" + "_".join(str(part) for part in first["loc"]).upper()
+        raise ServeError(first["msg"], where=variable) from None
     config = uvicorn.Config(
-        create_app(), log_level=log_level, access_log=False, timeout_graceful_shutdown=SHUTDOWN_S
+        app, log_level=log_level, access_log=False, timeout_graceful_shutdown=SHUTDOWN_S
     )  # the service writes an access log of its own
     return uvicorn.Server(config)
 

@@ -4,18 +4,11 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import models_store
+from models_store.library.shipped import list_shipped, load_shipped
 from shapewright.errors import ModelError, ParameterError
 
 if TYPE_CHECKING:
     from shapewright.modeling import ProceduralModel
-
-LIBRARY = Path(models_store.__file__).parent / "library"
-
-
-def library_files() -> dict[str, Path]:
-    """Return the files of the procedural models that ship, by name."""
-    return {path.parent.name: path for path in sorted(LIBRARY.glob("*/model.json"))}
 
 
 def load_model(source: str) -> "ProceduralModel":
@@ -26,19 +19,18 @@ def load_model(source: str) -> "ProceduralModel":
     """
     from shapewright.modeling import ProceduralModel
 
-    shipped = library_files()
+    shipped = list_shipped()
     if source in shipped:
-        return ProceduralModel.load(shipped[source])
-    path = Path(source)
-    if path.is_file():
-        return ProceduralModel.load(path)
+        return load_shipped(source)
+    if Path(source).is_file():
+        return ProceduralModel.load(source)
     names = ", ".join(shipped) or "none"
     raise ModelError(f"neither a file nor a shipped model (these ship: {names})", where=repr(source))
 
 
 def load_models(sources: list[str] | None) -> "list[ProceduralModel]":
     """Load the named models, or every shipped one when none is named."""
-    return [load_model(source) for source in (sources or list(library_files()))]
+    return [load_model(source) for source in (sources or list_shipped())]
 
 
 def read_object(file: Path) -> dict[str, Any]:

@@ -90,11 +90,8 @@ def real_data(repository: Path) -> Path:
 
 
 @pytest.fixture(scope="session")
-def library_models(repository: Path) -> "dict[str, ProceduralModel]":
+def library_models() -> "dict[str, ProceduralModel]":
     """The procedural models that ship, by name."""
-    from shapewright.modeling import ProceduralModel
+    from models_store.library.shipped import list_shipped, load_shipped
 
-    models = (
-        ProceduralModel.load(path) for path in sorted((repository / "models_store" / "library").glob("*/model.json"))
-    )
-    return {model.name: model for model in models}
+    return {name: load_shipped(name) for name in list_shipped()}

@@ -117,3 +117,15 @@ def test_a_busy_port_is_one_line(tmp_path: Path) -> None:
     assert done.returncode == 2
     assert done.stderr == f"shapewright: 127.0.0.1:{port}: cannot listen there: Address already in use\n"
     assert not (tmp_path / "data").exists()
+
+
+def test_a_wrong_setting_is_one_line_that_names_the_variable(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "cli", "serve", "--port", "0", "--data-dir", str(tmp_path / "data")],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "SHAPEWRIGHT_LEASE_S": "soon"},
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("shapewright: SHAPEWRIGHT_LEASE_S: ")
+    assert len(done.stderr.strip().splitlines()) == 1
