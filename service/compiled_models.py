@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from service.glb import GlbWriter
 from shapewright.errors import ModelError
+from shapewright.glb import GlbWriter
 from shapewright.modeling import CompiledModel, ProceduralModel
 
 

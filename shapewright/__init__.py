@@ -43,7 +43,7 @@ _HOMES = {
     "train_classifier": "classification",
 }
 
-__all__ = [  # noqa: RUF022 - the same names as _HOMES, in its order
+__all__ = [
     "Cancelled",
     "Classification",
     "Classifier",

@@ -13,6 +13,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from shapewright.errors import MeshError
+from shapewright.glb import GlbWriter
 
 WRITABLE_TYPES = ("glb", "obj", "off", "ply", "stl")
 """The file types a mesh can be written as."""
@@ -189,6 +190,8 @@ class TriangleMesh:
         if file_type == "off":
             counts = f"OFF\n{len(self.vertices)} {len(self.faces)} 0\n"
             return counts.encode() + self._text("%.17g %.17g %.17g", "3 %d %d %d", first_index=0)
+        if file_type == "glb":
+            return GlbWriter(self.faces).write(self.vertices)
         return bytes(self.to_trimesh().export(file_type=file_type))
 
     def _text(self, vertex_line: str, face_line: str, *, first_index: int) -> bytes:

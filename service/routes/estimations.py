@@ -6,13 +6,13 @@ from fastapi import APIRouter, BackgroundTasks, Depends, Request, Response
 
 from models_store import catalog
 from models_store.errors import NotFoundError
-from service import glb
 from service.conditional import immutable_response
 from service.dependencies import CursorQuery, IdPath, LimitQuery, ServicesDep, now, require_json
 from service.errors import Problem, ProblemError, reference_error
 from service.routes import NOT_MODIFIED, binary, problems
 from service.schemas.estimations import EstimationIn, EstimationOut, EstimationPageOut
 from service.schemas.jobs import AcceptedOut
+from shapewright import glb
 
 router = APIRouter(prefix="/v1/estimations", tags=["estimations"])
 

@@ -9,13 +9,13 @@ from starlette.concurrency import run_in_threadpool
 
 from models_store import catalog
 from models_store.tables import MeshRow
-from service import glb
 from service.body_limit import too_large
 from service.conditional import immutable_response
 from service.dependencies import CursorQuery, IdPath, LimitQuery, Services, ServicesDep, now
 from service.errors import Problem, ProblemError
 from service.routes import NOT_MODIFIED, binary, problems
 from service.schemas.meshes import MeshOut, MeshPageOut
+from shapewright import glb
 from shapewright.mesh_file import ReadLimits, parse_mesh
 from shapewright.mesh_sniff import READABLE_TYPES
 

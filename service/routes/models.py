@@ -9,13 +9,13 @@ from fastapi import APIRouter, BackgroundTasks, Depends, Request, Response
 
 from models_store import catalog
 from models_store.tables import JobRow, ModelRow
-from service import glb
 from service.compiled_models import InstanceGenerator
 from service.conditional import immutable_response
 from service.dependencies import CursorQuery, IdPath, LimitQuery, Services, ServicesDep, now, require_json
 from service.errors import Problem, ProblemError
 from service.routes import NOT_MODIFIED, binary, problems
 from service.schemas.models import InstanceIn, ModelDetailOut, ModelOut, ModelPageOut
+from shapewright import glb
 from shapewright.errors import ModelError
 from shapewright.modeling import ProceduralModel
 

@@ -1,6 +1,7 @@
 """A compiled model: the topology once, then positions for batches of parameters (DESIGN.md, section 2)."""
 
 import math
+import threading
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 SUBDIVISION_STEPS = 2
 """Surface sampling uses two steps (PAPER-NOTES, section 3)."""
 MAX_SUBDIVISION_STEPS = 4
-MAX_VERTICES = 4_000_000
+MAX_SURFACE_VERTICES = 4_000_000
 _CHUNK_BYTES = 64 * 2**20
 
 Values = Float[np.ndarray, "B P"]
@@ -69,8 +70,6 @@ class CompiledModel:
                 steps.append(_BoundStep(operation.apply(mesh), operation, bindings))
             except ModelError as error:
                 raise ModelError(error.message, where=f"operations[{index}]") from None
-            if mesh.n_vertices > MAX_VERTICES:
-                raise ModelError(f"more than {MAX_VERTICES} vertices", where=f"operations[{index}]")
         self._steps = tuple(steps)
         self._n_created = mesh.n_vertices
         self._live = np.array(mesh.live_vertices(), dtype=np.int64)
@@ -79,6 +78,7 @@ class CompiledModel:
         self.minimum: Float[np.ndarray, " P"] = np.array([p.minimum for p in model.parameters], dtype=np.float64)
         self.maximum: Float[np.ndarray, " P"] = np.array([p.maximum for p in model.parameters], dtype=np.float64)
         self._levels: list[SubdivisionStep] = []
+        self._growing = threading.Lock()  # several threads may ask for the same new level
 
     # ------------------------------------------------------------------ parameters
 
@@ -179,11 +179,12 @@ class CompiledModel:
         """Return the topology after ``steps`` subdivisions; raises ModelError if that is out of range."""
         if not 0 <= steps <= MAX_SUBDIVISION_STEPS:
             raise ModelError(f"subdivision steps must be 0 to {MAX_SUBDIVISION_STEPS}")
-        while len(self._levels) < steps:
-            polygons = self._levels[-1].refined if self._levels else self._control
-            if sum(map(len, polygons.loops)) > MAX_VERTICES:
-                raise ModelError(f"more than {MAX_VERTICES} vertices after {steps} subdivisions")
-            self._levels.append(subdivide(polygons))
+        with self._growing:
+            while len(self._levels) < steps:
+                polygons = self._levels[-1].refined if self._levels else self._control
+                if sum(map(len, polygons.loops)) > MAX_SURFACE_VERTICES:
+                    raise ModelError(f"more than {MAX_SURFACE_VERTICES} vertices after {steps} subdivisions")
+                self._levels.append(subdivide(polygons))
         return self._levels[steps - 1].refined if steps else self._control
 
     def surface_triangles(self, steps: int = SUBDIVISION_STEPS) -> Int[np.ndarray, "F 3"]:

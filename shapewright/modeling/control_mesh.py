@@ -11,6 +11,8 @@ from shapewright.modeling.elements import Element
 
 Loop = tuple[int, ...]
 
+MAX_VERTICES = 200_000
+
 
 class ControlMesh:
     """Vertices, edges, faces and components with ids in the order of their creation; ids are never used again.
@@ -107,7 +109,13 @@ class ControlMesh:
         return self.n_components - 1
 
     def add_vertex(self, component: int) -> int:
-        """Add a vertex; it exists for queries as soon as a face uses it."""
+        """Add a vertex; it exists for queries as soon as a face uses it.
+
+        Raises:
+            ModelError: there are ``MAX_VERTICES`` of them; a stranger's document must not fill the memory.
+        """
+        if self.n_vertices >= MAX_VERTICES:
+            raise ModelError(f"a control mesh of more than {MAX_VERTICES} vertices is refused")
         self._component_of.append(component)
         self.n_vertices += 1
         return self.n_vertices - 1

@@ -90,9 +90,10 @@ class ProceduralModel:
             raise ModelError(f"a model of more than {MAX_DOCUMENT_BYTES} bytes is refused")
         try:
             document = json.loads(text, parse_constant=_refuse_constant)
+            json.dumps(document, ensure_ascii=False).encode()  # JSON can escape half characters, UTF-8 cannot
         except json.JSONDecodeError as error:
             raise ModelError(error.msg, where=f"line {error.lineno} column {error.colno}") from None
-        except (UnicodeDecodeError, RecursionError, ValueError) as error:
+        except (UnicodeError, RecursionError, ValueError) as error:
             raise ModelError(f"not a JSON text: {error}") from None
         return cls.from_document(document)
 

@@ -88,6 +88,7 @@ def test_a_wrong_document_is_refused_with_the_place(
         ('{"a": NaN}', None),
         ("[" * 100_000, None),
         (b"\xff\xfe\x00", None),
+        ('{"format": "\\ud800"}', None),
         ("[]", "document"),
     ],
 )
@@ -139,3 +140,15 @@ def test_recorder_wants_parameters_that_act() -> None:
     recorder.extrude(box.top, 1.0, length="unknown", height="idle")
     with pytest.raises(ModelError, match="not declared"):
         recorder.build()
+
+
+def test_a_document_cannot_fill_the_memory() -> None:
+    document = stool()
+    copies = [{"elements": [], "frame": "world"}] * 4000
+    document["operations"] = [
+        {"op": "base", "shape": "ring", "size": [4, 4, 1], "sides": 256, "tube_sides": 256, "anchors": copies}
+    ]
+    document["parameters"] = []
+    with pytest.raises(ModelError, match="200000 vertices") as caught:
+        ProceduralModel.from_document(document).compile()
+    assert caught.value.where == "operations[0]"
