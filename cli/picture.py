@@ -24,14 +24,14 @@ def save_side_by_side(
         query: the unknown mesh.
         fitted: the fitted mesh, in the coordinates of the query.
         path: of the PNG.
-        model_to_query: rotation of the fitted pose; undone, so that the picture shows the object upright
-            however the query lies in its file.
+        model_to_query: rotation of the fitted pose; undone, so that the picture shows the object upright (z
+            of the model upwards) however the query lies in its file.
         size: pixels of each of the three pictures.
     """
     from PIL import Image
 
     from shapewright.rendering import compose_side_by_side, three_quarter_view
 
-    view = three_quarter_view()
+    view = three_quarter_view("z")
     rotation = view if model_to_query is None else view @ model_to_query.T
     Image.fromarray(compose_side_by_side(query, fitted, rotation=rotation, size=size)).save(path)

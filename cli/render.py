@@ -20,6 +20,13 @@ class Style(StrEnum):
     edges = "edges"
 
 
+class Up(StrEnum):
+    """The axis of the object that points upwards in the picture."""
+
+    y = "y"
+    z = "z"
+
+
 def render(
     source: Annotated[
         str,
@@ -30,7 +37,8 @@ def render(
     output: Annotated[Path, typer.Option("--output", "-o", help="PNG file to write.", show_default=False)],
     size: Annotated[int, typer.Option(min=16, max=4096, help="Width and height in pixels.")] = 512,
     style: Annotated[Style, typer.Option(help="shaded for people; edges is what the classifier sees.")] = Style.shaded,
-    turn: Annotated[float, typer.Option(help="Degrees around the vertical (y) axis.")] = 35.0,
+    up: Annotated[Up, typer.Option(help="The axis that points upwards; z for the models that ship.")] = Up.z,
+    turn: Annotated[float, typer.Option(help="Degrees around the upright axis.")] = 35.0,
     tilt: Annotated[float, typer.Option(help="Degrees that the camera looks down.")] = 22.0,
     assignments: Annotated[
         list[str] | None, typer.Option("--set", "-s", metavar="NAME=X", help="A parameter value of a model.")
@@ -56,7 +64,7 @@ def render(
         mesh = compiled.instance(compiled.values_from_mapping(read_assignments(assignments, None)))
     else:
         mesh = load_mesh(source)
-    view = three_quarter_view(azimuth_rad=math.radians(turn), elevation_rad=math.radians(tilt))
+    view = three_quarter_view(up.value, azimuth_rad=math.radians(turn), elevation_rad=math.radians(tilt))
     pixels = render_mesh(mesh, rotation=view, size=size, style=style.value)
     output.parent.mkdir(parents=True, exist_ok=True)
     Image.fromarray(pixels).save(output)
