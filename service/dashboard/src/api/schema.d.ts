@@ -788,7 +788,7 @@ export interface components {
              * Estimator
              * @description Which estimator works; `reference` is the paper, step by step.
              */
-            estimator?: string | null;
+            estimator?: "reference" | null;
         };
         /**
          * HealthOut
@@ -1414,7 +1414,7 @@ export interface components {
              * Style
              * @description Look of the pictures.
              */
-            style?: string | null;
+            style?: ("edges" | "shaded") | null;
             /**
              * Window
              * @description Half the side of a picture, in units of the scaled object.

@@ -57,6 +57,8 @@ export function App() {
         title: meshSession.mesh?.file_name ?? "Mesh",
         subtitle: meshSession.legend.length > 0 ? "Query and fitted model, overlaid" : "Query",
         layers: meshSession.layers,
+        kind: "mesh" as const,
+        fittedUp: meshSession.fittedUp,
         busy: meshSession.busy,
         error: meshSession.error,
         legend:
@@ -66,6 +68,7 @@ export function App() {
         title: model ? humanize(model.name) : "Shapewright",
         ...(model ? { subtitle: count(model.parameters.length, "parameter") } : {}),
         layers: modelSession.layers,
+        kind: "model" as const,
         busy: modelSession.busy,
         held: modelSession.held,
         error: modelSession.error,

@@ -1,12 +1,13 @@
 /** The 3D view with its tools and its legend. */
-import { Suspense, lazy, useCallback, useRef, useState } from "react";
+import { Suspense, lazy, useCallback, useMemo, useRef, useState } from "react";
 import type { KeyboardEvent, ReactNode } from "react";
 
 import { useColorScheme } from "../hooks/useColorScheme";
 import type { CameraCommands } from "../three/CameraRig";
 import type { Layer } from "../three/layers";
 import { PALETTES } from "../three/palette";
-import type { UpAxis } from "../three/Scene";
+import { DEFAULT_UP, upChoices, upDirection } from "../three/up";
+import type { Up, Vec3 } from "../three/up";
 import { ErrorBoundary } from "./ErrorBoundary";
 import { Icon } from "./Icon";
 import type { IconName } from "./Icon";
@@ -18,6 +19,10 @@ interface StageProps {
   title: string;
   subtitle?: string;
   layers: Layer[];
+  /** A procedural model, or a mesh from elsewhere: they differ in what points up. */
+  kind: "model" | "mesh";
+  /** Where the fitted model's upright axis points, if one was fitted. */
+  fittedUp?: Vec3 | null;
   busy: boolean;
   /** A slider that changes the mesh is being held. */
   held?: boolean;
@@ -28,13 +33,14 @@ interface StageProps {
   legend?: ReactNode;
 }
 
+const UP_NAMES: Record<Up, string> = { y: "the y axis", z: "the z axis", model: "the fitted model's upright axis" };
 const TURN_RAD = Math.PI / 18;
 
-export function Stage({ title, subtitle, layers, busy, held = false, error, empty, legend }: StageProps) {
+export function Stage({ title, subtitle, layers, kind, fittedUp = null, busy, held = false, error, empty, legend }: StageProps) {
   const scheme = useColorScheme();
   const [showEdges, setShowEdges] = useState(false);
   const [showGrid, setShowGrid] = useState(true);
-  const [up, setUp] = useState<UpAxis>("y");
+  const [chosenUp, setChosenUp] = useState<Record<"model" | "mesh", Up>>(DEFAULT_UP);
   const [drawError, setDrawError] = useState<unknown>(null);
   const [drawn, setDrawn] = useState<{ subject: string | null; revision: number }>({ subject: null, revision: 0 });
   const camera = useRef<CameraCommands | null>(null);
@@ -65,6 +71,11 @@ export function Stage({ title, subtitle, layers, busy, held = false, error, empt
     action();
   };
 
+  const choices = upChoices(fittedUp);
+  const up = choices.find((choice) => choice === chosenUp[kind]) ?? "y";
+  const nextUp = choices[(choices.indexOf(up) + 1) % choices.length]!;
+  const direction = useMemo(() => upDirection(up, fittedUp), [up, fittedUp]);
+
   const waiting = layers.length > 0 && drawn.subject === null && !error && !drawError;
   return (
     <section className="stage" aria-label="3D view" data-testid="stage">
@@ -93,7 +104,7 @@ export function Stage({ title, subtitle, layers, busy, held = false, error, empt
               palette={PALETTES[scheme]}
               showEdges={showEdges}
               showGrid={showGrid}
-              up={up}
+              up={direction}
               held={held}
               onCamera={onCamera}
               onDrawn={onDrawn}
@@ -114,11 +125,11 @@ export function Stage({ title, subtitle, layers, busy, held = false, error, empt
         <button
           type="button"
           className="tool tool-text"
-          onClick={() => setUp(up === "y" ? "z" : "y")}
-          title="Which axis of the file points up"
-          aria-label={`Up axis: ${up.toUpperCase()}`}
+          onClick={() => setChosenUp({ ...chosenUp, [kind]: nextUp })}
+          title={`What points up: ${UP_NAMES[up]}. Next: ${UP_NAMES[nextUp]}`}
+          aria-label={`What points up: ${UP_NAMES[up]}`}
         >
-          <Icon name="up" /> {up.toUpperCase()}
+          <Icon name="up" /> {up === "model" ? "Fit" : up.toUpperCase()}
         </button>
       </div>
       <span className="stage-busy" data-busy={busy || waiting} aria-hidden="true" />

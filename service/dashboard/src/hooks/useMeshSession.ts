@@ -6,6 +6,7 @@ import { newestOf } from "../components/ClassificationPanel";
 import { usableClassifiers } from "../components/ClassifierPicker";
 import type { LegendEntry } from "../components/Legend";
 import type { Layer } from "../three/layers";
+import { modelUp } from "../three/up";
 
 type Look = Record<string, { visible: boolean; opacity: number }>;
 
@@ -79,6 +80,9 @@ export function useMeshSession(route: Route) {
     return [query, fit];
   }, [meshId, queryGlb.data, fitGlb.data, hasFit, estimation?.id, queryVisible, queryOpacity, fitLook]);
 
+  const rotation = hasFit ? estimation?.result?.pose.rotation : undefined;
+  const fittedUp = useMemo(() => (rotation ? modelUp(rotation) : null), [rotation]);
+
   const legend: LegendEntry[] = hasFit
     ? [
         { id: "query", label: "Query", tone: "query", visible: queryVisible, opacity: queryOpacity },
@@ -97,6 +101,7 @@ export function useMeshSession(route: Route) {
     estimation,
     estimations,
     layers,
+    fittedUp,
     legend,
     adjust,
   };

@@ -2,25 +2,26 @@
 import { Grid } from "@react-three/drei";
 import { useFrame, useThree } from "@react-three/fiber";
 import { useCallback, useEffect, useMemo, useRef, useState } from "react";
-import { Box3, Matrix4, Sphere } from "three";
+import { Box3, Matrix4, Quaternion, Sphere, Vector3 } from "three";
 import type { DirectionalLight } from "three";
 
 import { CameraRig } from "./CameraRig";
 import type { CameraCommands } from "./CameraRig";
 import type { Layer } from "./layers";
+import type { Vec3 } from "./up";
 import type { Palette } from "./palette";
 import { Surface } from "./Surface";
 import { useGeometry } from "./useGeometry";
 import type { Decoded } from "./useGeometry";
 
-export type UpAxis = "y" | "z";
 
 export interface SceneProps {
   layers: Layer[];
   palette: Palette;
   showEdges: boolean;
   showGrid: boolean;
-  up: UpAxis;
+  /** The direction in the file that points up on the screen. */
+  up: Vec3;
   /** A control that changes the mesh is being held: the camera stays where it is. */
   held: boolean;
   onCamera: (commands: CameraCommands) => void;
@@ -29,8 +30,7 @@ export interface SceneProps {
   onError: (error: unknown) => void;
 }
 
-const Z_UP = new Matrix4().makeRotationX(-Math.PI / 2);
-const Y_UP = new Matrix4();
+const SCREEN_UP = new Vector3(0, 1, 0);
 
 export function Scene({ layers, palette, showEdges, showGrid, up, held, onCamera, onDrawn, onError }: SceneProps) {
   const [decoded, setDecoded] = useState<Record<string, Decoded>>({});
@@ -40,7 +40,10 @@ export function Scene({ layers, palette, showEdges, showGrid, up, held, onCamera
       return value ? { ...others, [id]: value } : others;
     });
   }, []);
-  const matrix = up === "z" ? Z_UP : Y_UP;
+  const matrix = useMemo(() => {
+    const turn = new Quaternion().setFromUnitVectors(new Vector3(...up).normalize(), SCREEN_UP);
+    return new Matrix4().makeRotationFromQuaternion(turn);
+  }, [up]);
 
   const first = layers[0] ? decoded[layers[0].id] : undefined;
   const subject = first?.subject ?? null;
@@ -96,7 +99,7 @@ export function Scene({ layers, palette, showEdges, showGrid, up, held, onCamera
           />
         ))}
       </group>
-      <CameraRig bounds={sphere} frameKey={`${subject} ${up}`} held={held} onReady={onCamera} />
+      <CameraRig bounds={sphere} frameKey={`${subject} ${up.join(" ")}`} held={held} onReady={onCamera} />
     </>
   );
 }
