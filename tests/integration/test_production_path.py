@@ -83,7 +83,8 @@ def _walk(client: Client, folder: Path, library_models: "dict[str, ProceduralMod
         answer, new = client.post_document("/v1/models", model.to_json())
         assert new
         uploaded[answer["class_name"]] = answer
-        assert client.post_document("/v1/models", model.to_json()) == (client.get(f"/v1/models/{answer['id']}"), False)
+        again, new = client.post_document("/v1/models", model.to_json())
+        assert (again["id"], new) == (answer["id"], False)
 
     accepted = client.post("/v1/classifiers", {"model_ids": [m["id"] for m in uploaded.values()], "settings": TRAINING})
     client.follow(accepted["job"])
