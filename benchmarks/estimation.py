@@ -59,6 +59,7 @@ def main() -> None:
     parser.add_argument("--surface-points", type=int, default=defaults.surface_points)
     parser.add_argument("--image-size", type=int, default=defaults.image_size)
     parser.add_argument("--steps", type=float, nargs="+", default=list(defaults.step_sizes))
+    parser.add_argument("--quick", action="store_true", help="coarser settings; the options above do not count")
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
     path = Path(options.model)
@@ -69,12 +70,16 @@ def main() -> None:
         query, truth = synthetic_query(compiled, options.seed)
     else:
         query = load_mesh(options.mesh)
-    settings = EstimationSettings(
-        samples=options.samples,
-        surface_points=options.surface_points,
-        image_size=options.image_size,
-        step_sizes=tuple(options.steps),
-        seed=options.seed,
+    settings = (
+        EstimationSettings.quick(seed=options.seed)
+        if options.quick
+        else EstimationSettings(
+            samples=options.samples,
+            surface_points=options.surface_points,
+            image_size=options.image_size,
+            step_sizes=tuple(options.steps),
+            seed=options.seed,
+        )
     )
     warm = EstimationSettings(samples=1, surface_points=50, image_size=16, step_sizes=(1.0,))
     estimate(TriangleMesh(np.eye(3), np.array([[0, 1, 2]])), compiled, warm)  # kernels are compiled or loaded here

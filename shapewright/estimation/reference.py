@@ -25,6 +25,9 @@ from shapewright.estimation.verdict import choose
 from shapewright.mesh import TriangleMesh
 from shapewright.progress import Progress
 
+SHOWN_SUBDIVISION_STEPS = 2
+"""The fitted mesh is subdivided at least this often, even if coarser instances were compared."""
+
 _BANK_WEIGHT = 15.0  # of the paper's 10 000 instances
 _WEIGHTS = {  # shares of the time that were seen
     "layer 1": 3.0,
@@ -154,8 +157,6 @@ class ReferenceEstimator:
         return keep
 
     def _estimation(self) -> Estimation:
-        assert self._comparison is not None
-        comparison = self._comparison
         stages = tuple(self._stage(name) for name in STAGE_LAYERS if name in self._found)
         answer = choose(stages, self._settings)
         parameters = tuple(
@@ -170,7 +171,9 @@ class ReferenceEstimator:
             )
             for parameter, value in zip(self._generator.model.parameters, answer.values, strict=True)
         )
-        mesh = TriangleMesh(answer.pose.apply(comparison.points(answer.values)), comparison.triangles)
+        steps = max(self._settings.subdivision_steps, SHOWN_SUBDIVISION_STEPS)
+        points = self._generator.surface_points(answer.values[None], steps)[0]
+        mesh = TriangleMesh(answer.pose.apply(points), self._generator.surface_triangles(steps))
         return Estimation(
             layer=answer.layer,
             values=answer.values,

@@ -63,6 +63,23 @@ class EstimationSettings:
         if self.estimator not in ("reference",):
             raise EstimationError(f"there is no estimator {self.estimator!r}", where="estimator")
 
+    @classmethod
+    def quick(cls, *, samples: int = 1000, seed: int = 0) -> "EstimationSettings":
+        """Coarser settings for a first look (ours): about a fifth of the time, and a result not quite as close.
+
+        On a table and a glass of the Princeton benchmark the z-buffer distance, at a tenth of the samples, ended
+        at 0.08 and 0.10; the table with the paper's settings and 2000 samples at 0.07.
+        """
+        return cls(
+            samples=samples,
+            surface_points=500,
+            image_size=128,
+            subdivision_steps=1,
+            step_sizes=(1.0, 0.5, 0.25, 0.1, 0.02),
+            alignment=AlignmentSettings(0.02, 0.02 * np.pi, 0.02),
+            seed=seed,
+        )
+
     def to_dict(self) -> dict[str, Any]:
         """Plain values, ready for JSON."""
         document = asdict(self)

@@ -19,6 +19,14 @@ def test_defaults_are_the_papers() -> None:
     assert settings.alignment == AlignmentSettings(0.01, 0.01 * np.pi, 0.01, (0.5, 1.5))
 
 
+def test_quick_settings_are_coarser_and_keep_the_thresholds() -> None:
+    quick, usual = EstimationSettings.quick(samples=300, seed=4), EstimationSettings()
+    assert (quick.samples, quick.seed) == (300, 4)
+    assert (quick.surface_threshold, quick.zbuffer_threshold) == (usual.surface_threshold, usual.zbuffer_threshold)
+    assert quick.surface_points < usual.surface_points
+    assert quick.alignment.translation_step > usual.alignment.translation_step
+
+
 def test_settings_survive_json() -> None:
     settings = EstimationSettings(samples=7, step_sizes=(0.5, 0.1), alignment=AlignmentSettings(scale_step=0.02))
     assert EstimationSettings.from_dict(json.loads(json.dumps(settings.to_dict()))) == settings
