@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,6 +31,7 @@ CHROMIUM_ARGUMENTS = [
     "--ignore-gpu-blocklist",
 ]
 START_TIMEOUT_S = 60.0
+PICTURE_TIMEOUT_S = 30.0
 JOB_TIMEOUT_MS = 180_000
 
 
@@ -127,15 +129,35 @@ def _drawn(page: Page, subject: str) -> Locator:
     stage = page.get_by_test_id("stage-canvas")
     expect(stage).to_have_attribute("data-subject", re.compile(f"^{subject}"), timeout=30_000)
     expect(stage.locator("canvas")).to_be_visible()
-    page.wait_for_timeout(200)  # the frame after the change
+    expect(page.locator(".stage-busy")).to_have_attribute("data-busy", "false")
     return stage
 
 
-def _picture(stage: Locator, path: Path) -> np.ndarray:
-    """What the view shows, as (height, width, 3) integers; also kept as a file to look at."""
+def _shot(stage: Locator, path: Path) -> np.ndarray:
+    """What the view shows now, as (height, width, 3) integers; also kept as a file to look at."""
+    stage.page.mouse.move(0, 0)  # what is hovered looks different
     stage.locator("canvas").screenshot(path=path)
     with Image.open(path) as image:
         return np.asarray(image.convert("RGB")).astype(int)
+
+
+def _picture(stage: Locator, path: Path, wanted: Callable[[np.ndarray], bool] | None = None) -> np.ndarray:
+    """What the view shows once it stands still and, if a condition is given, meets it."""
+    deadline = time.monotonic() + PICTURE_TIMEOUT_S
+    before, now = None, _shot(stage, path)
+    while before is None or _changed_share(before, now) > 0 or (wanted is not None and not wanted(now)):
+        assert time.monotonic() < deadline, f"the view does not come to show what is expected: {path}"
+        stage.page.wait_for_timeout(150)
+        before, now = now, _shot(stage, path)
+    return now
+
+
+def _unlike(other: np.ndarray) -> Callable[[np.ndarray], bool]:
+    return lambda picture: _changed_share(other, picture) > 0.01
+
+
+def _like(other: np.ndarray) -> Callable[[np.ndarray], bool]:
+    return lambda picture: _changed_share(other, picture) < 1e-4
 
 
 def _changed_share(a: np.ndarray, b: np.ndarray) -> float:
@@ -161,15 +183,12 @@ def test_a_slider_moves_the_mesh_and_nothing_else(new_page: Callable[..., Page],
         slider.press("Home")
     assert json.loads(answer.value.headers["x-shapewright-values"])["post_length"] == 0.5
     expect(row.get_by_role("status")).to_have_text("50.0 mm")
-    page.wait_for_timeout(500)
-    short = _picture(stage, tmp_path / "short.png")
-    assert _changed_share(base, short) > 0.01
+    _picture(stage, tmp_path / "short.png", _unlike(base))
 
     # Back at the base every pixel is as before: neither the camera nor the light has moved.
     page.get_by_role("button", name="Reset", exact=True).click()
     expect(row.get_by_role("status")).to_have_text("100 mm")
-    page.wait_for_timeout(500)
-    assert _changed_share(base, _picture(stage, tmp_path / "again.png")) < 1e-4
+    _picture(stage, tmp_path / "again.png", _like(base))
 
     with page.expect_response(lambda answer: answer.url.endswith("/instances")) as answer:
         page.get_by_role("button", name="Random variation").click()
@@ -236,16 +255,14 @@ def test_from_an_unknown_mesh_to_its_parameters(new_page: Callable[..., Page], l
 
     # Both meshes are there: each switch changes the picture.
     legend = page.get_by_role("list", name="Meshes in the view")
-    page.wait_for_timeout(500)
-    both = _picture(stage, tmp_path / "both.png")
-    assert _changed_share(query_alone, both) > 0.01
+    both = _picture(stage, tmp_path / "both.png", _unlike(query_alone))
     legend.get_by_role("button", name="Fitted model").click()
-    page.wait_for_timeout(300)
-    without_fit = _picture(stage, tmp_path / "without-fit.png")
-    assert _changed_share(both, without_fit) > 0.01
+    without_fit = _picture(stage, tmp_path / "without-fit.png", _unlike(both))
     legend.get_by_role("button", name="Query").click()
-    page.wait_for_timeout(300)
-    assert _changed_share(without_fit, _picture(stage, tmp_path / "without-both.png")) > 0.01
+    _picture(stage, tmp_path / "without-both.png", _unlike(without_fit))
+    for name in ("Query", "Fitted model"):
+        legend.get_by_role("button", name=name).click()
+    _picture(stage, tmp_path / "both-again.png", _like(both))
     page.screenshot(path=tmp_path / "result.png")
 
     # The address leads back to the same result; the parameters open in the model.
@@ -292,8 +309,7 @@ def test_the_view_turns_from_the_keyboard(new_page: Callable[..., Page], site: S
     stage.focus()
     for _ in range(4):
         page.keyboard.press("ArrowRight")
-    page.wait_for_timeout(300)
-    assert _changed_share(before, _picture(stage, tmp_path / "after.png")) > 0.01
+    _picture(stage, tmp_path / "after.png", _unlike(before))
 
 
 def _drop(page: Page, path: Path) -> None:
