@@ -15,14 +15,15 @@ def render_thumbnail(context: JobContext) -> Outcome:
     """Render the model with all parameters at their base values and keep the picture as PNG."""
     from PIL import Image
 
-    from shapewright.rendering import render_mesh
+    from shapewright.rendering import render_mesh, three_quarter_view
 
     model_id = str(context.claim.payload["model_id"])
     compiled = context.load_model(model_id).compile()
     context.progress.report(0.3, "drawing")
     mesh = compiled.instance(compiled.base_values(), steps=SUBDIVISION_STEPS)
     png = BytesIO()
-    Image.fromarray(render_mesh(mesh, size=SIZE)).save(png, format="PNG", optimize=True)
+    picture = render_mesh(mesh, rotation=three_quarter_view("z"), size=SIZE)  # models stand with z up
+    Image.fromarray(picture).save(png, format="PNG", optimize=True)
     key = context.own_key(f"thumbnails/{model_id}", "png")
     context.artifacts.put(key, png.getvalue())
     return Outcome(partial(catalog.record_thumbnail, model_id=model_id, thumbnail_key=key), (key,))
