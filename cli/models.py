@@ -36,18 +36,17 @@ def list_models(as_json: AsJson = False) -> None:
         return
     from rich.table import Table
 
-    table = Table("name", "class", "parameters", "operations", "closed", "digest", "description")
+    table = Table(box=None, pad_edge=False)
+    table.add_column("name", no_wrap=True, style="bold")
+    table.add_column("class", no_wrap=True)
+    table.add_column("parameters", justify="right", no_wrap=True)
+    table.add_column("operations", justify="right", no_wrap=True)
+    table.add_column("digest", no_wrap=True, style="dim")
     for model in found:
-        table.add_row(
-            model.name,
-            model.class_name,
-            str(len(model.parameters)),
-            str(len(model.operations)),
-            "yes" if model.closed else "no",
-            model.digest[:12],
-            model.description,
-        )
+        counts = (str(len(model.parameters)), str(len(model.operations)))
+        table.add_row(model.name, model.class_name, *counts, model.digest[:12])
     stdout().print(table)
+    stdout().print("\n[dim]shapewright models show NAME tells more about one.[/]")
 
 
 @app.command("show")
