@@ -1,0 +1,55 @@
+"""The README's Python runs as it stands, with less work to do."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+LESS = {
+    "variations=100, images_per_variation=5": "variations=16, images_per_variation=3",
+    "EstimationSettings.quick()": "EstimationSettings(**less)",
+    "random_values(rng, 1000)": "random_values(rng, 10)",
+}
+FEW = {"samples": 40, "surface_points": 200, "image_size": 48, "subdivision_steps": 1, "step_sizes": (0.5,)}
+
+
+def blocks(repository: Path) -> list[str]:
+    text = (repository / "README.md").read_text(encoding="utf-8")
+    found = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
+    for block, wanted in zip(found, ("EstimationSettings.quick()", "random_values(rng, 1000)"), strict=True):
+        assert wanted in block, "the replacements below no longer fit the README"
+    return found
+
+
+def run(code: str, names: dict[str, Any]) -> dict[str, Any]:
+    for plain, smaller in LESS.items():
+        code = code.replace(plain, smaller)
+    exec(compile(code, "README.md", "exec"), names)
+    return names
+
+
+@pytest.mark.timeout(300)
+def test_classify_and_rebuild(
+    repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    code = blocks(repository)[0].replace("examples/goblet.ply", str(repository / "examples" / "goblet.ply"))
+    names = run(code, {"less": FEW})
+    assert names["answer"].class_name == "glass_with_stem"
+    assert (tmp_path / "fitted.glb").read_bytes()[:4] == b"glTF"
+    assert names["volume"] > 0
+    printed = capsys.readouterr().out
+    assert "layer" in printed
+    assert all(parameter.label in printed for parameter in names["estimation"].parameters)
+
+
+def test_model_a_stool(repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    names = run(blocks(repository)[1], {"rng": np.random.default_rng(0)})
+    from shapewright import ProceduralModel
+
+    assert ProceduralModel.load("stool.json") == names["stool"]
+    assert len(names["stools"]) == 10
+    assert np.ptp(names["stools"][:, :, 2].min(axis=1)) > 0.1  # legs of different lengths
