@@ -20,16 +20,26 @@ class Lathe:
         self.bottom: Ring = tuple(recorder.vertices_of(component.bottom))
         self.top: Ring = tuple(recorder.vertices_of(component.top))
 
-    def rise(self, by: float, **varies: str) -> Ring:
-        """Extrude by a distance (below 0: back down, for an inner wall) and return the new ring."""
-        self._recorder.extrude(self.face, by, **varies)
+    def rise(self, by: float, *, length: str = "") -> Ring:
+        """Extrude by a distance (below 0: back down, for an inner wall) and return the new ring.
+
+        ``length`` names the parameter that varies it, if any.
+        """
+        if length:
+            self._recorder.extrude(self.face, by, length=length)
+        else:
+            self._recorder.extrude(self.face, by)
         self.top = tuple(self._recorder.vertices_of(self.face))
         return self.top
 
 
-def widen(recorder: Recorder, rings: list[Ring], sigma: float, **varies: str) -> None:
-    """Scale rings about their common axis, in the plane across the z axis of the model."""
-    recorder.scale(group(*(vertex for ring in rings for vertex in ring), frame="world"), sigma, "uv", **varies)
+def widen(recorder: Recorder, rings: list[Ring], sigma: float, *, size: str = "") -> None:
+    """Scale rings about their common axis, across the z axis of the model; ``size`` names a parameter, if any."""
+    target = group(*(vertex for ring in rings for vertex in ring), frame="world")
+    if size:
+        recorder.scale(target, sigma, "uv", size=size)
+    else:
+        recorder.scale(target, sigma, "uv")
 
 
 def control_diameter(diameter: float, sides: int) -> float:

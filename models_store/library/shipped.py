@@ -15,9 +15,8 @@ THUMBNAIL = "thumbnail.png"
 
 def list_shipped() -> dict[str, Traversable]:
     """Return the documents of the shipped models, by name, sorted by name."""
-    folders = resources.files("models_store.library").iterdir()
-    documents = {folder.name: folder / DOCUMENT for folder in folders if folder.is_dir()}
-    return {name: document for name, document in sorted(documents.items()) if document.is_file()}
+    found = {folder.name: folder / DOCUMENT for folder in _folder().iterdir() if folder.is_dir()}
+    return {name: document for name, document in sorted(found.items()) if document.is_file()}
 
 
 def load_shipped(name: str) -> "ProceduralModel":
@@ -28,7 +27,7 @@ def load_shipped(name: str) -> "ProceduralModel":
     """
     from shapewright.modeling import ProceduralModel
 
-    return ProceduralModel.from_json(_shipped(name).read_bytes())
+    return ProceduralModel.from_json(_checked(name).read_bytes())
 
 
 def thumbnail_png(name: str) -> bytes:
@@ -37,11 +36,15 @@ def thumbnail_png(name: str) -> bytes:
     Raises:
         ModelError: no model of this name ships.
     """
-    folder = resources.files("models_store.library") / _shipped(name).parent.name
-    return (folder / THUMBNAIL).read_bytes()
+    _checked(name)
+    return (_folder() / name / THUMBNAIL).read_bytes()
 
 
-def _shipped(name: str) -> Traversable:
+def _folder() -> Traversable:
+    return resources.files("models_store.library")
+
+
+def _checked(name: str) -> Traversable:
     shipped = list_shipped()
     if name not in shipped:
         names = ", ".join(shipped) or "none"

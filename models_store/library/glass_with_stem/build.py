@@ -53,24 +53,24 @@ def build() -> ProceduralModel:
     foot = [column.bottom, column.top]
 
     # Foot and stem.
-    slope = column.rise(0.45 * FOOT_HEIGHT, height="foot_height")
-    stem_foot = column.rise(0.55 * FOOT_HEIGHT, height="foot_height")
-    stem = [stem_foot, *(column.rise(share * STEM_LENGTH, height="stem_length") for share in (0.13, 0.27, 0.30, 0.14))]
-    stem += [column.rise(KNOP_HEIGHT / 2, height="stem_thickness") for _ in range(2)]  # stays as high as it is thick
+    slope = column.rise(0.45 * FOOT_HEIGHT, length="foot_height")
+    stem_foot = column.rise(0.55 * FOOT_HEIGHT, length="foot_height")
+    stem = [stem_foot, *(column.rise(share * STEM_LENGTH, length="stem_length") for share in (0.13, 0.27, 0.30, 0.14))]
+    stem += [column.rise(KNOP_HEIGHT / 2, length="stem_thickness") for _ in range(2)]  # stays as high as it is thick
     knop = stem[-2]
-    stem += [column.rise(share * STEM_LENGTH, height="stem_length") for share in (0.10, 0.06)]
+    stem += [column.rise(share * STEM_LENGTH, length="stem_length") for share in (0.10, 0.06)]
 
     # Bowl: outer wall, rim, inner wall.
-    bottom = column.rise(0.04 * BOWL_DEPTH, height="bowl_depth")
-    lower = column.rise(0.18 * BOWL_DEPTH, height="bowl_depth")
-    belly = column.rise(0.30 * BOWL_DEPTH, height="bowl_depth")
-    rim = column.rise(0.48 * BOWL_DEPTH, height="bowl_depth")
+    bottom = column.rise(0.04 * BOWL_DEPTH, length="bowl_depth")
+    lower = column.rise(0.18 * BOWL_DEPTH, length="bowl_depth")
+    belly = column.rise(0.30 * BOWL_DEPTH, length="bowl_depth")
+    rim = column.rise(0.48 * BOWL_DEPTH, length="bowl_depth")
     recorder.mark_sharp(column.face)
     inner_rim = column.rise(0.0)
     recorder.mark_sharp(column.face)
-    inner_belly = column.rise(-0.47 * BOWL_DEPTH, height="bowl_depth")
-    inner_lower = column.rise(-0.29 * BOWL_DEPTH, height="bowl_depth")
-    inner_bottom = column.rise(-0.15 * BOWL_DEPTH, height="bowl_depth")
+    inner_belly = column.rise(-0.47 * BOWL_DEPTH, length="bowl_depth")
+    inner_lower = column.rise(-0.29 * BOWL_DEPTH, length="bowl_depth")
+    inner_bottom = column.rise(-0.15 * BOWL_DEPTH, length="bowl_depth")
     floor = column.rise(0.0)
 
     # Underside of the foot, so that its vertices spread over the disc.

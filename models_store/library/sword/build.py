@@ -4,6 +4,7 @@ Grip and blade are components of their own, anchored at the guard. The blade is 
 and thickness 1; then it is tapered, sized and at last bent segment by segment.
 """
 
+from itertools import pairwise
 from pathlib import Path
 
 from models_store.library.author import publish
@@ -16,12 +17,15 @@ BLADE_TAPER = 0.30  # share of the width that is lost up to the tip
 BLADE_CURVATURE_DEG = 4.0  # between root and tip
 TIP_LENGTH = 0.07
 TIP_WIDTHS = (0.66, 0.05)  # halfway and at the end
-GUARD_WIDTH, GUARD_DEPTH, GUARD_HEIGHT = 0.21, 0.030, 0.028
+GUARD_BLOCK, GUARD_DEPTH, GUARD_HEIGHT = 0.05, 0.036, 0.034
+ARM_LENGTH = 0.08
 GUARD_CURVATURE_DEG = 12.0
+ARM_THICKNESS = 0.65  # relative to the block between the arms
 ARM_SEGMENTS = 4
 GRIP_LENGTH, GRIP_DIAMETER = 0.16, 0.030
 POMMEL = 0.050
 HILT_SIDES = 6
+BAR_CONTROL = 12 / 11  # a bar of square section ends this much thinner than its control mesh
 
 
 def build() -> ProceduralModel:
@@ -29,16 +33,19 @@ def build() -> ProceduralModel:
     recorder = Recorder(
         "sword", "sword", description="A sword or dagger with guard, grip and pommel; straight or curved."
     )
-    recorder.parameter("blade_length", "Blade length (without tip)", 0.35, 1.4, base_value=BLADE_LENGTH)
+    recorder.parameter("blade_length", "Blade length (without tip)", 0.35, 1.5, base_value=BLADE_LENGTH)
     recorder.parameter("blade_width", "Blade width", 0.3, 2.2, base_value=BLADE_WIDTH)
     recorder.parameter("blade_thickness", "Blade thickness", 0.4, 2.0, base_value=BLADE_THICKNESS)
     recorder.parameter("blade_taper", "Blade taper (share of width lost)", -0.8, 2.5, base_value=BLADE_TAPER)
     recorder.parameter("tip_length", "Tip length", 0.3, 2.5, base_value=TIP_LENGTH)
     recorder.parameter("blade_curvature", "Blade curvature", 0.0, 5.0, unit="deg", base_value=BLADE_CURVATURE_DEG)
-    recorder.parameter("guard_width", "Guard width", 0.3, 1.6, base_value=GUARD_WIDTH)
-    recorder.parameter("guard_depth", "Guard depth", 0.6, 3.0, base_value=GUARD_DEPTH)
+    recorder.parameter("guard_arm_length", "Guard arm length", 0.2, 1.8, base_value=ARM_LENGTH)
+    recorder.parameter("guard_depth", "Guard depth", 0.5, 2.5, base_value=GUARD_DEPTH)
+    recorder.parameter(
+        "guard_arm_thickness", "Guard arm thickness (relative to its block)", 0.5, 1.5, base_value=ARM_THICKNESS
+    )
     recorder.parameter("guard_curvature", "Guard bend", -3.0, 3.0, unit="deg", base_value=GUARD_CURVATURE_DEG)
-    recorder.parameter("grip_length", "Grip length", 0.5, 1.9, base_value=GRIP_LENGTH)
+    recorder.parameter("grip_length", "Grip length", 0.5, 2.0, base_value=GRIP_LENGTH)
     recorder.parameter("grip_thickness", "Grip thickness", 0.5, 1.6, base_value=GRIP_DIAMETER)
     recorder.parameter("pommel_size", "Pommel size", 0.5, 1.5, base_value=POMMEL)
     guard = _guard(recorder)
@@ -49,19 +56,19 @@ def build() -> ProceduralModel:
 
 def _guard(recorder: Recorder) -> Component:
     """A block with two arms that are bent alike."""
-    block = 0.22 * GUARD_WIDTH
-    guard = recorder.box(block, 1.5 * GUARD_DEPTH, 1.5 * GUARD_HEIGHT, offset=(0.0, 0.0, -0.75 * GUARD_HEIGHT))
+    depth, height = BAR_CONTROL * GUARD_DEPTH, BAR_CONTROL * GUARD_HEIGHT
+    guard = recorder.box(GUARD_BLOCK, depth, height, offset=(0.0, 0.0, -height / 2))
     right, left = guard.sides[1], guard.sides[3]
     arms = [Target((right,)), mirrored("x", left)]
     for segment in range(ARM_SEGMENTS):
-        recorder.extrude(arms, (GUARD_WIDTH - block) / 2 / ARM_SEGMENTS, length="guard_width")
+        recorder.extrude(arms, ARM_LENGTH / ARM_SEGMENTS, length="guard_arm_length")
         recorder.rotate(arms, -GUARD_CURVATURE_DEG / ARM_SEGMENTS, "u", angle="guard_curvature")
         if segment == 0:
-            recorder.scale(arms, 0.72, "uv")
-    recorder.extrude(arms, 0.5 * GUARD_HEIGHT)
-    recorder.scale(arms, 1.4, "uv")
-    recorder.extrude(arms, 0.5 * GUARD_HEIGHT)
-    recorder.scale(arms, 0.7, "uv")
+            recorder.scale(arms, ARM_THICKNESS, "uv", size="guard_arm_thickness")
+    knob = 0.28 * GUARD_HEIGHT
+    for size in (1.7, 1.0, 0.6):
+        recorder.extrude(arms, knob)
+        recorder.scale(arms, size, "uv")
     recorder.scale(group(guard.whole, frame="world"), 1.0, "v", size="guard_depth")
     return guard
 
@@ -81,14 +88,14 @@ def _grip(recorder: Recorder, guard: Component) -> None:
         if width != 1.0:
             widen(recorder, [ring], width)
     widen(recorder, knob, POMMEL, size="pommel_size")
-    for ring, width in zip(knob, (0.75, 1.15, 1.05, 0.5), strict=True):
+    for ring, width in zip(knob, (0.68, 1.04, 0.95, 0.45), strict=True):
         widen(recorder, [ring], width)
 
 
 def _blade(recorder: Recorder, guard: Component) -> None:
     """A blade of lenticular section with two sharp edges."""
     segment = 1.0 / BLADE_SEGMENTS
-    root = 0.75 * GUARD_HEIGHT  # it starts within the guard
+    root = BAR_CONTROL * GUARD_HEIGHT / 2  # it starts within the guard
     blade = recorder.base("prism", (1.0, 1.5, segment), sides=4, offset=(0.0, 0.0, -root), anchors=guard.top)[0]
     column = Lathe(recorder, blade)
     rings = [column.bottom, column.top, *(column.rise(segment) for _ in range(BLADE_SEGMENTS - 1))]
@@ -117,7 +124,7 @@ def _blade(recorder: Recorder, guard: Component) -> None:
 
 def _sharpen(recorder: Recorder, blade: Component, rings: list[Ring]) -> None:
     edges = []
-    for lower, upper in zip(rings, rings[1:], strict=False):
+    for lower, upper in pairwise(rings):
         for start, end in zip(_edge_vertices(recorder, lower), _edge_vertices(recorder, upper), strict=True):
             edges.append(Element("edge", recorder.mesh.edge_between(start.id, end.id)))
     recorder.mark_sharp(*edges, blade.bottom, blade.top)

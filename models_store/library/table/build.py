@@ -38,10 +38,10 @@ def build() -> ProceduralModel:
     recorder.parameter("top_width", "Top width", 0.5, 1.6, base_value=WIDTH)
     recorder.parameter("top_thickness", "Top thickness", 0.3, 2.5, base_value=THICKNESS)
     recorder.parameter("leg_length", "Leg length", 0.4, 1.5, base_value=LEG_LENGTH)
-    recorder.parameter("leg_thickness", "Leg thickness", 0.35, 2.0, base_value=LEG_THICKNESS)
-    recorder.parameter("leg_inset", "Leg inset from the edge", 0.0, 3.0, base_value=LEG_INSET)
+    recorder.parameter("leg_thickness", "Leg thickness", 0.35, 1.8, base_value=LEG_THICKNESS)
+    recorder.parameter("leg_inset", "Leg inset from the edge", 0.0, 2.2, base_value=LEG_INSET)
     recorder.parameter("leg_taper", "Leg taper (share of thickness lost at the foot)", 0.0, 3.0, base_value=LEG_TAPER)
-    recorder.parameter("leg_splay", "Leg splay (shift of the feet outwards)", -0.5, 2.5, base_value=LEG_SPLAY)
+    recorder.parameter("leg_splay", "Leg splay (shift of the feet outwards)", -0.25, 2.5, base_value=LEG_SPLAY)
     recorder.parameter("apron_height", "Apron height", 0.05, 2.2, base_value=APRON_HEIGHT)
     slab, corners = _slab(recorder)
     _legs(recorder, corners)
@@ -136,8 +136,8 @@ def _apron(recorder: Recorder, slab: Component) -> None:
         recorder.scale(face, share, "uv")
 
 
-def _draw_in(recorder: Recorder, face: Element, distance: float, **varies: str) -> None:
-    """Move the four sides of a rectangle towards its middle."""
+def _draw_in(recorder: Recorder, face: Element, distance: float, *, length: str = "") -> None:
+    """Move the four sides of a rectangle towards its middle; ``length`` names a parameter, if any."""
     vertices = recorder.vertices_of(face)
     points = np.array([recorder.positions(vertex)[0] for vertex in vertices])
     for column, mirror, phi_deg in ((0, Mirror("x"), 180.0), (1, Mirror("y"), -90.0)):
@@ -145,7 +145,11 @@ def _draw_in(recorder: Recorder, face: Element, distance: float, **varies: str) 
             tuple(v for v, p in zip(vertices, points, strict=True) if abs(p[column] - end) < TOLERANCE)
             for end in (points[:, column].max(), points[:, column].min())
         )
-        recorder.drag([Target(far, "world"), Target(near, "world", (mirror,))], rho=distance, phi_deg=phi_deg, **varies)
+        sides = [Target(far, "world"), Target(near, "world", (mirror,))]
+        if length:
+            recorder.drag(sides, rho=distance, phi_deg=phi_deg, length=length)
+        else:
+            recorder.drag(sides, rho=distance, phi_deg=phi_deg)
 
 
 def _corner_edges(recorder: Recorder, face: Element) -> list[Element]:
