@@ -2,6 +2,7 @@
 
 import math
 import re
+import reprlib
 from dataclasses import dataclass
 from typing import Literal
 
@@ -19,7 +20,7 @@ ELEMENT_PATTERN = "^[vefc](0|[1-9][0-9]{0,8})$"
 AXES: tuple[Axis, ...] = ("x", "y", "z")
 
 
-@dataclass(frozen=True, order=True)
+@dataclass(frozen=True, order=True, slots=True)
 class Element:
     """A vertex, edge, face or component by its stable id; written ``v3``, ``e12``, ``f0``, ``c1``."""
 
@@ -34,7 +35,7 @@ class Element:
             ModelError: the text is not a letter of ``v e f c`` followed by a number.
         """
         if not re.fullmatch(ELEMENT_PATTERN, text):
-            raise ModelError(f"{text!r} is not an element; write v, e, f or c and its number, like 'f12'")
+            raise ModelError(f"{reprlib.repr(text)} is not an element; write v, e, f or c and its number, like 'f12'")
         return cls(_KINDS[text[0]], int(text[1:]))
 
     def __str__(self) -> str:
@@ -98,7 +99,7 @@ def image_matrix(image: Image) -> Float[np.ndarray, "3 3"]:
     return matrix
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Target:
     """Elements that move as one, and the frame in which they do.
 

@@ -2,6 +2,8 @@
 
 import dataclasses
 import math
+import re
+import reprlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -11,6 +13,9 @@ from shapewright.modeling.elements import AXES, ELEMENT_PATTERN, Element, Image,
 
 MAX_ELEMENTS = 100_000
 MAX_MAGNITUDE = 1e6
+
+NUMBER_SCHEMA: dict[str, Any] = {"type": "number", "minimum": -MAX_MAGNITUDE, "maximum": MAX_MAGNITUDE}
+"""What :func:`read_number` accepts."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +43,7 @@ def choice(*values: str) -> FieldKind:
 
     def read(value: Any, where: str) -> str:
         if value not in values:
-            raise ModelError(f"{value!r} is none of {', '.join(values)}", where=where)
+            raise ModelError(f"{shown(value)} is none of {', '.join(values)}", where=where)
         return str(value)
 
     return FieldKind({"enum": list(values)}, read, str)
@@ -48,20 +53,38 @@ def integer(minimum: int, maximum: int) -> FieldKind:
     """Return the kind of a whole number within bounds."""
 
     def read(value: Any, where: str) -> int:
-        if isinstance(value, bool) or not isinstance(value, int) or not minimum <= value <= maximum:
-            raise ModelError(f"{value!r} is not a whole number from {minimum} to {maximum}", where=where)
-        return value
+        whole = whole_number(value)
+        if whole is None or not minimum <= whole <= maximum:
+            raise ModelError(f"{shown(value)} is not a whole number from {minimum} to {maximum}", where=where)
+        return whole
 
     return FieldKind({"type": "integer", "minimum": minimum, "maximum": maximum}, read, int)
 
 
 def read_number(value: Any, where: str) -> float:
     """Return a finite number of sane size; raises ModelError."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ModelError(f"{value!r} is not a finite number", where=where)
+    if isinstance(value, bool) or not isinstance(value, int | float) or value != value or abs(value) == math.inf:
+        raise ModelError(f"{shown(value)} is not a finite number", where=where)
     if abs(value) > MAX_MAGNITUDE:
-        raise ModelError(f"{value!r} is beyond {MAX_MAGNITUDE:g}", where=where)
-    return float(value)
+        raise ModelError(f"{shown(value)} is beyond {MAX_MAGNITUDE:g}", where=where)
+    return write_number(value)
+
+
+def write_number(value: float) -> float:
+    """Return the one form in which equal numbers are written: a float, and no negative zero."""
+    return float(value) + 0.0
+
+
+def whole_number(value: Any) -> int | None:
+    """Return a whole number of a document, which JSON may write as 4 or 4.0; ``None`` if it is none."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    return int(value) if isinstance(value, int) or value.is_integer() else None
+
+
+def shown(value: Any) -> str:
+    """Return how a value of any size stands in a message."""
+    return reprlib.repr(value)
 
 
 def _read_vector(value: Any, where: str) -> tuple[float, float, float]:
@@ -74,7 +97,7 @@ def _read_vector(value: Any, where: str) -> tuple[float, float, float]:
 
 def _read_flag(value: Any, where: str) -> bool:
     if not isinstance(value, bool):
-        raise ModelError(f"{value!r} is neither true nor false", where=where)
+        raise ModelError(f"{shown(value)} is neither true nor false", where=where)
     return value
 
 
@@ -88,7 +111,7 @@ def _read_list(value: Any, where: str) -> list[Any]:
 
 def _read_element(value: Any, where: str) -> Element:
     if not isinstance(value, str):
-        raise ModelError(f"{value!r} is not an element like 'f12'", where=where)
+        raise ModelError(f"{shown(value)} is not an element like 'f12'", where=where)
     try:
         return Element.parse(value)
     except ModelError as error:
@@ -102,8 +125,10 @@ def _read_elements(value: Any, where: str) -> tuple[Element, ...]:
 def _read_directed(value: Any, where: str) -> tuple[tuple[Element, bool], ...]:
     pairs = []
     for i, item in enumerate(_read_list(value, where)):
-        backwards = isinstance(item, str) and item.startswith("-")
-        pairs.append((_read_element(item[1:] if backwards else item, f"{where}[{i}]"), backwards))
+        if not isinstance(item, str) or not re.fullmatch(_DIRECTED_PATTERN, item):
+            raise ModelError(f"{shown(item)} is no edge like 'e12' or '-e12'", where=f"{where}[{i}]")
+        backwards = item.startswith("-")
+        pairs.append((Element.parse(item[backwards:]), backwards))
     return tuple(pairs)
 
 
@@ -113,7 +138,7 @@ def read_object(value: Any, where: str, allowed: set[str]) -> dict[str, Any]:
         raise ModelError("an object is needed", where=where)
     unknown = sorted(set(value) - allowed)
     if unknown:
-        raise ModelError(f"unknown field {unknown[0]!r}", where=where)
+        raise ModelError(f"unknown field {shown(unknown[0])}", where=where)
     return value
 
 
@@ -133,14 +158,19 @@ def _read_image(value: Any, where: str) -> Image:
 
 
 def _write_image(image: Image) -> list[dict[str, Any]]:
-    return [{"mirror": t.axis} if isinstance(t, Mirror) else {"turn": t.axis, "angle_deg": t.angle_deg} for t in image]
+    return [
+        {"mirror": t.axis} if isinstance(t, Mirror) else {"turn": t.axis, "angle_deg": write_number(t.angle_deg)}
+        for t in image
+    ]
 
 
 def _read_target(value: Any, where: str) -> Target:
     item = read_object(value, where, {"elements", "frame", "image"})
+    if "elements" not in item:
+        raise ModelError("a target needs the field 'elements'", where=where)
     frame = item.get("frame", "own")
     return Target(
-        elements=_read_elements(item.get("elements", []), f"{where}.elements"),
+        elements=_read_elements(item["elements"], f"{where}.elements"),
         frame=frame if frame in ("own", "world") else _read_element(frame, f"{where}.frame"),
         image=_read_image(item.get("image", []), f"{where}.image"),
     )
@@ -164,9 +194,15 @@ def _read_targets(value: Any, where: str) -> tuple[Target, ...]:
 
 _AXIS = choice(*AXES)
 _ELEMENT_SCHEMA = {"type": "string", "pattern": ELEMENT_PATTERN}
-_IMAGE_SCHEMA = {
-    "type": "array",
-    "items": {
+_DIRECTED_PATTERN = "^-?e(0|[1-9][0-9]{0,8})$"
+
+
+def _list_schema(items: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "array", "maxItems": MAX_ELEMENTS, "items": items}
+
+
+_IMAGE_SCHEMA = _list_schema(
+    {
         "oneOf": [
             {
                 "type": "object",
@@ -176,45 +212,47 @@ _IMAGE_SCHEMA = {
             },
             {
                 "type": "object",
-                "properties": {"turn": _AXIS.schema, "angle_deg": {"type": "number"}},
+                "properties": {"turn": _AXIS.schema, "angle_deg": NUMBER_SCHEMA},
                 "required": ["turn", "angle_deg"],
                 "additionalProperties": False,
             },
         ]
-    },
-}
-_TARGET_SCHEMA = {
+    }
+)
+_TARGET_SCHEMA: dict[str, Any] = {
     "type": "object",
     "properties": {
-        "elements": {"type": "array", "items": _ELEMENT_SCHEMA},
+        "elements": _list_schema(_ELEMENT_SCHEMA),
         "frame": {"anyOf": [{"enum": ["own", "world"]}, _ELEMENT_SCHEMA]},
         "image": _IMAGE_SCHEMA,
     },
     "required": ["elements"],
     "additionalProperties": False,
 }
+_ORIGINAL_SCHEMA = {"properties": {"image": {"maxItems": 0}}}
+"""The first target: the images of the others are images of its frame."""
 
-NUMBER = FieldKind({"type": "number"}, read_number, float)
+NUMBER = FieldKind(NUMBER_SCHEMA, read_number, write_number)
 FLAG = FieldKind({"type": "boolean"}, _read_flag, bool)
 VECTOR = FieldKind(
-    {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
+    {"type": "array", "items": NUMBER_SCHEMA, "minItems": 3, "maxItems": 3},
     _read_vector,
-    lambda vector: [float(item) for item in vector],
+    lambda vector: [write_number(item) for item in vector],
 )
 ELEMENT = FieldKind(_ELEMENT_SCHEMA, _read_element, str)
-ELEMENTS = FieldKind(
-    {"type": "array", "items": _ELEMENT_SCHEMA}, _read_elements, lambda elements: [str(e) for e in elements]
-)
+ELEMENTS = FieldKind(_list_schema(_ELEMENT_SCHEMA), _read_elements, lambda elements: [str(e) for e in elements])
 OPTIONAL_ELEMENT = FieldKind(
     {"anyOf": [_ELEMENT_SCHEMA, {"type": "null"}]},
     lambda value, where: None if value is None else _read_element(value, where),
     lambda element: None if element is None else str(element),
 )
 DIRECTED_EDGES = FieldKind(
-    {"type": "array", "items": {"type": "string", "pattern": "^-?e[0-9]+$"}},
+    _list_schema({"type": "string", "pattern": _DIRECTED_PATTERN}),
     _read_directed,
     lambda edges: [f"-{e}" if backwards else str(e) for e, backwards in edges],
 )
 TARGETS = FieldKind(
-    {"type": "array", "items": _TARGET_SCHEMA}, _read_targets, lambda ts: [_write_target(t) for t in ts]
+    {**_list_schema(_TARGET_SCHEMA), "prefixItems": [{"allOf": [_TARGET_SCHEMA, _ORIGINAL_SCHEMA]}]},
+    _read_targets,
+    lambda ts: [_write_target(t) for t in ts],
 )

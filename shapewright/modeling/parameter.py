@@ -7,10 +7,20 @@ from dataclasses import dataclass
 from typing import Any
 
 from shapewright.errors import ModelError
-from shapewright.modeling.fields import MAX_MAGNITUDE, read_number, read_object
+from shapewright.modeling.fields import (
+    MAX_MAGNITUDE,
+    NUMBER_SCHEMA,
+    read_number,
+    read_object,
+    shown,
+    whole_number,
+    write_number,
+)
 
 NAME_PATTERN = "^[a-z][a-z0-9_]{0,63}$"
 MAX_LABEL = 200
+MAX_UNIT = 20
+MAX_TARGETS = 20_000
 
 
 @dataclass(frozen=True)
@@ -45,7 +55,7 @@ class Parameter:
 
     def __post_init__(self) -> None:
         if not re.fullmatch(NAME_PATTERN, self.name):
-            raise ModelError(f"{self.name!r} is no parameter name: small letters, digits and _ only")
+            raise ModelError(f"{shown(self.name)} is no parameter name: small letters, digits and _ only")
         if not self.label.strip() or len(self.label) > MAX_LABEL:
             raise ModelError(f"parameter {self.name!r} needs a label of at most {MAX_LABEL} characters")
         if not (math.isfinite(self.minimum) and math.isfinite(self.maximum)):
@@ -57,6 +67,10 @@ class Parameter:
             raise ModelError(f"the range of {self.name!r} is beyond {MAX_MAGNITUDE:g}")
         if not self.targets:
             raise ModelError(f"parameter {self.name!r} changes no operation")
+        if self.unit is not None and len(self.unit) > MAX_UNIT:
+            raise ModelError(f"the unit of {self.name!r} is longer than {MAX_UNIT} characters")
+        if self.base_value is not None and not abs(self.base_value) <= MAX_MAGNITUDE:
+            raise ModelError(f"the base value of {self.name!r} is beyond {MAX_MAGNITUDE:g} or no number")
 
     @classmethod
     def from_document(cls, document: Any, where: str) -> "Parameter":
@@ -73,13 +87,13 @@ class Parameter:
             if not isinstance(item[text], str):
                 raise ModelError("a text is needed", where=f"{where}.{text}")
         unit, base_value = item.get("unit"), item.get("base_value")
-        if unit is not None and (not isinstance(unit, str) or len(unit) > 20):
-            raise ModelError("a text of at most 20 characters is needed", where=f"{where}.unit")
+        if unit is not None and (not isinstance(unit, str) or len(unit) > MAX_UNIT):
+            raise ModelError(f"a text of at most {MAX_UNIT} characters is needed", where=f"{where}.unit")
         bounds = item["range"]
         if not isinstance(bounds, list) or len(bounds) != 2:
             raise ModelError("a range is a list of two numbers", where=f"{where}.range")
-        if not isinstance(item["targets"], list):
-            raise ModelError("a list is needed", where=f"{where}.targets")
+        if not isinstance(item["targets"], list) or len(item["targets"]) > MAX_TARGETS:
+            raise ModelError(f"a list of at most {MAX_TARGETS} is needed", where=f"{where}.targets")
         minimum, maximum = (read_number(bound, f"{where}.range[{i}]") for i, bound in enumerate(bounds))
         try:
             return cls(
@@ -100,8 +114,8 @@ class Parameter:
             "name": self.name,
             "label": self.label,
             "unit": self.unit,
-            "base_value": self.base_value,
-            "range": [float(self.minimum), float(self.maximum)],
+            "base_value": None if self.base_value is None else write_number(self.base_value),
+            "range": [write_number(self.minimum), write_number(self.maximum)],
             "targets": [{"operation": t.operation, "mode": t.mode} for t in self.targets],
         }
 
@@ -112,13 +126,19 @@ class Parameter:
             "type": "object",
             "properties": {
                 "name": {"type": "string", "pattern": NAME_PATTERN},
-                "label": {"type": "string", "minLength": 1, "maxLength": MAX_LABEL},
-                "unit": {"type": ["string", "null"], "maxLength": 20},
-                "base_value": {"type": ["number", "null"]},
-                "range": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2},
+                "label": {"type": "string", "pattern": "\\S", "maxLength": MAX_LABEL},
+                "unit": {"type": ["string", "null"], "maxLength": MAX_UNIT},
+                "base_value": {**NUMBER_SCHEMA, "type": ["number", "null"]},
+                "range": {
+                    "type": "array",
+                    "prefixItems": [{**NUMBER_SCHEMA, "maximum": 1}, {**NUMBER_SCHEMA, "minimum": 1}],
+                    "minItems": 2,
+                    "maxItems": 2,
+                },
                 "targets": {
                     "type": "array",
                     "minItems": 1,
+                    "maxItems": MAX_TARGETS,
                     "items": {
                         "type": "object",
                         "properties": {
@@ -137,8 +157,8 @@ class Parameter:
 
 def _read_target(value: Any, where: str) -> ParameterTarget:
     item = read_object(value, where, {"operation", "mode"})
-    operation, mode = item.get("operation"), item.get("mode")
-    if isinstance(operation, bool) or not isinstance(operation, int) or operation < 0:
+    operation, mode = whole_number(item.get("operation")), item.get("mode")
+    if operation is None or operation < 0:
         raise ModelError("the index of an operation is needed", where=f"{where}.operation")
     if not isinstance(mode, str):
         raise ModelError("a mode of the operation is needed", where=f"{where}.mode")

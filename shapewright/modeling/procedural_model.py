@@ -10,7 +10,7 @@ from typing import Any
 
 from shapewright.errors import ModelError
 from shapewright.modeling.compiled import CompiledModel
-from shapewright.modeling.fields import read_object
+from shapewright.modeling.fields import read_object, shown
 from shapewright.modeling.operations import OPERATIONS, Base, Operation
 from shapewright.modeling.parameter import NAME_PATTERN, Parameter
 from shapewright.modeling.upgrade import FORMAT, VERSION, upgrade_document
@@ -56,12 +56,12 @@ class ProceduralModel:
             for j, target in enumerate(parameter.targets):
                 place = f"parameters[{i}].targets[{j}]"
                 if target.operation >= len(self.operations):
-                    raise ModelError(f"there is no operation {target.operation}", where=f"{place}.operation")
+                    raise ModelError(f"there is no operation {shown(target.operation)}", where=f"{place}.operation")
                 operation = self.operations[target.operation]
                 if target.mode not in operation.modes:
                     known = ", ".join(operation.modes) or "none"
                     raise ModelError(
-                        f"{operation.kind} has no mode {target.mode!r}; it has: {known}",
+                        f"{operation.kind} has no mode {shown(target.mode)}; it has: {known}",
                         where=f"{place}.mode",
                     )
 
@@ -201,6 +201,7 @@ _PROPERTIES: dict[str, Any] = {
         "type": "array",
         "minItems": 1,
         "maxItems": MAX_OPERATIONS,
+        "prefixItems": [Base.schema()],
         "items": {"oneOf": [operation.schema() for operation in OPERATIONS.values()]},
     },
     "parameters": {"type": "array", "maxItems": MAX_PARAMETERS, "items": Parameter.schema()},
@@ -212,13 +213,13 @@ def _read_operation(value: Any, where: str) -> Operation:
         raise ModelError("an object is needed", where=where)
     kind = value.get("op")
     if not isinstance(kind, str) or kind not in OPERATIONS:
-        raise ModelError(f"unknown operation {kind!r}; there are: {', '.join(OPERATIONS)}", where=f"{where}.op")
+        raise ModelError(f"unknown operation {shown(kind)}; there are: {', '.join(OPERATIONS)}", where=f"{where}.op")
     return OPERATIONS[kind].from_document({k: v for k, v in value.items() if k != "op"}, where)
 
 
 def _check_name(value: Any, where: str) -> None:
     if not isinstance(value, str) or not re.fullmatch(NAME_PATTERN, value):
-        raise ModelError(f"{value!r} is no name: small letters, digits and _ only, a letter first", where=where)
+        raise ModelError(f"{shown(value)} is no name: small letters, digits and _ only, a letter first", where=where)
 
 
 def _refuse_constant(text: str) -> Any:

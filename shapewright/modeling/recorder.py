@@ -17,6 +17,7 @@ from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.elements import Axis, Element, Image, Mirror, Target, Turn, edge, face
 from shapewright.modeling.frames import frame_of_element, newell_normal
 from shapewright.modeling.operations import (
+    OPERATIONS,
     Base,
     Connect,
     Drag,
@@ -328,6 +329,9 @@ class Recorder:
                 known = ", ".join(operation.modes) or "none"
                 raise ModelError(f"{operation.kind} has no mode {mode!r}; it has: {known}")
         index = len(self._operations)
+        document = operation.to_document()
+        # What is recorded is what a document says: checked, and numbers of any kind as they will be read.
+        operation = OPERATIONS[document.pop("op")].from_document(document, f"operations[{index}]")
         mesh = copy.deepcopy(self.mesh)  # a refused operation leaves everything as it was
         try:
             step = operation.apply(mesh)

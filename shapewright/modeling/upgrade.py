@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from shapewright.errors import ModelError
+from shapewright.modeling.fields import shown, whole_number
 
 FORMAT = "shapewright-procedural-model"
 VERSION = 1
@@ -31,11 +32,13 @@ def upgrade_document(
         raise ModelError("a JSON object is needed", where="document")
     if document.get("format") != FORMAT:
         raise ModelError(f"this is no procedural model: its format must be {FORMAT!r}", where="format")
-    found = document.get("version")
-    if isinstance(found, bool) or not isinstance(found, int) or found < 1:
-        raise ModelError(f"{found!r} is no version", where="version")
+    found = whole_number(document.get("version"))
+    if found is None or found < 1:
+        raise ModelError(f"{shown(document.get('version'))} is no version", where="version")
     if found > version:
-        raise ModelError(f"version {found} is newer than this program, which knows up to {version}", where="version")
+        raise ModelError(
+            f"version {shown(found)} is newer than this program, which knows up to {version}", where="version"
+        )
     current = dict(document)
     for step in range(found, version):
         current = {**upgrades[step](current), "version": step + 1}

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from shapewright.errors import ModelError
 from shapewright.modeling.control_mesh import ControlMesh
-from shapewright.modeling.fields import FieldKind
+from shapewright.modeling.fields import FieldKind, shown
 from shapewright.modeling.frames import Positions
 
 Amounts = Float[np.ndarray, " B"]
@@ -75,7 +75,7 @@ class Operation(ABC):
         kinds = cls.field_kinds()
         for name in document:
             if name not in kinds:
-                raise ModelError(f"{cls.kind} has no field {name!r}", where=where)
+                raise ModelError(f"{cls.kind} has no field {shown(name)}", where=where)
         for f in dataclasses.fields(cls):
             if f.default is dataclasses.MISSING and f.name not in document:
                 raise ModelError(f"{cls.kind} needs the field {f.name!r}", where=where)
