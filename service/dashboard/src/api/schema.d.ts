@@ -1188,136 +1188,43 @@ export interface components {
             class: string;
             description?: string;
             closed?: boolean;
-            operations: ({
-                /** @constant */
-                op: "base";
-                /** @enum {unknown} */
-                shape: "box" | "prism" | "ring" | "sheet";
-                size: number[];
-                sides?: number;
-                tube_sides?: number;
-                offset?: number[];
-                anchors?: {
-                    elements: string[];
-                    frame?: ("own" | "world") | string;
-                    image?: ({
-                        /** @enum {unknown} */
-                        mirror: "x" | "y" | "z";
-                    } | {
-                        /** @enum {unknown} */
-                        turn: "x" | "y" | "z";
-                        angle_deg: number;
-                    })[];
-                }[];
-            } | {
-                /** @constant */
-                op: "extrude";
-                targets: {
-                    elements: string[];
-                    frame?: ("own" | "world") | string;
-                    image?: ({
-                        /** @enum {unknown} */
-                        mirror: "x" | "y" | "z";
-                    } | {
-                        /** @enum {unknown} */
-                        turn: "x" | "y" | "z";
-                        angle_deg: number;
-                    })[];
-                }[];
-                z?: number;
-                rho?: number;
-                phi_deg?: number;
-            } | {
-                /** @constant */
-                op: "rotation_extrude";
-                face: string;
-                edge: string;
-                angle_deg: number;
-                length: number;
-                width?: number;
-            } | {
-                /** @constant */
-                op: "insert_vertex";
-                edges: string[];
-                lambda1?: number;
-            } | {
-                /** @constant */
-                op: "drag";
-                targets: {
-                    elements: string[];
-                    frame?: ("own" | "world") | string;
-                    image?: ({
-                        /** @enum {unknown} */
-                        mirror: "x" | "y" | "z";
-                    } | {
-                        /** @enum {unknown} */
-                        turn: "x" | "y" | "z";
-                        angle_deg: number;
-                    })[];
-                }[];
-                z?: number;
-                rho?: number;
-                phi_deg?: number;
-            } | {
-                /** @constant */
-                op: "scale";
-                targets: {
-                    elements: string[];
-                    frame?: ("own" | "world") | string;
-                    image?: ({
-                        /** @enum {unknown} */
-                        mirror: "x" | "y" | "z";
-                    } | {
-                        /** @enum {unknown} */
-                        turn: "x" | "y" | "z";
-                        angle_deg: number;
-                    })[];
-                }[];
-                sigma: number;
-                /** @enum {unknown} */
-                axes?: "uvz" | "uv" | "uz" | "vz" | "u" | "v" | "z";
-                pivot?: string | null;
-            } | {
-                /** @constant */
-                op: "rotate";
-                targets: {
-                    elements: string[];
-                    frame?: ("own" | "world") | string;
-                    image?: ({
-                        /** @enum {unknown} */
-                        mirror: "x" | "y" | "z";
-                    } | {
-                        /** @enum {unknown} */
-                        turn: "x" | "y" | "z";
-                        angle_deg: number;
-                    })[];
-                }[];
-                alpha_deg: number;
-                /** @enum {unknown} */
-                axis?: "u" | "v" | "z";
-                pivot?: string | null;
-            } | {
-                /** @constant */
-                op: "connect";
-                first: string;
-                second: string;
-                shift?: number;
-            } | {
-                /** @constant */
-                op: "remove";
-                elements: string[];
-            } | {
-                /** @constant */
-                op: "mark_sharp";
-                elements: string[];
-                sharp?: boolean;
-            })[];
+            operations: [
+                {
+                    /** @constant */
+                    op: "base";
+                    /** @enum {unknown} */
+                    shape: "box" | "prism" | "ring" | "sheet";
+                    size: number[];
+                    sides?: number;
+                    tube_sides?: number;
+                    offset?: number[];
+                    anchors?: [
+                        {
+                            elements: string[];
+                            frame?: ("own" | "world") | string;
+                            image?: ({
+                                /** @enum {unknown} */
+                                mirror: "x" | "y" | "z";
+                            } | {
+                                /** @enum {unknown} */
+                                turn: "x" | "y" | "z";
+                                angle_deg: number;
+                            })[];
+                        } & {
+                            image?: unknown;
+                        }
+                    ];
+                }
+            ];
             parameters?: {
                 name: string;
                 label: string;
                 unit?: string | null;
                 base_value?: number | null;
-                range: number[];
+                range: [
+                    number,
+                    number
+                ];
                 targets: {
                     operation: number;
                     mode: string;
