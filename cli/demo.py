@@ -12,6 +12,7 @@ import typer
 
 from cli.console import AsJson, print_json, shown_progress, stderr, stdout
 from cli.report import parameter_table, probability_table
+from cli.sources import read_object
 from models_store.library.shipped import list_shipped
 from shapewright.errors import ShapewrightError
 
@@ -43,6 +44,10 @@ def demo(
     images: Annotated[int, typer.Option(min=1, help="Images of each variation.")] = 5,
     samples: Annotated[int, typer.Option(min=1, help="Random instances of the estimation's first layer.")] = 1500,
     seed: Annotated[int, typer.Option(min=0, help="Seed of all random choices.")] = 0,
+    settings_file: Annotated[
+        Path | None,
+        typer.Option("--settings", help='JSON file with settings of the estimation: {"image_size": 256}.'),
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Show the whole path on one mesh: train, classify, estimate, and look at it in the dashboard.
@@ -59,10 +64,11 @@ def demo(
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     console = stderr() if as_json else stdout()
     query = SAMPLE if mesh is None else mesh
-    settings = {"variations": variations, "images_per_variation": images, "seed": seed}
+    training = {"variations": variations, "images_per_variation": images, "seed": seed}
     finished = False
     try:
         _refuse_early(query)
+        estimating = _quick_settings(samples, seed) | (read_object(settings_file) if settings_file else {})
         output.mkdir(parents=True, exist_ok=True)
         with contextlib.ExitStack() as stack:
             folder = data_dir or stack.enter_context(_temporary_folder())
@@ -73,7 +79,7 @@ def demo(
             service = stack.enter_context(local_service(folder, port=port, log=output / "service.log"))
             client = stack.enter_context(connected(service["url"], ready_within_s=READY_WITHIN_S))
             console.print(f"   {service['url']}, worker {service['worker_pid']}, log {output / 'service.log'}")
-            report = _walk(client, console, query, output, settings, {"samples": samples, "seed": seed})
+            report = _walk(client, console, query, output, training, estimating)
             report["dashboard_url"] = service["dashboard_url"]
             finished = True
             if as_json:
@@ -89,6 +95,15 @@ def demo(
     except (ShapewrightError, OSError) as error:
         stderr().print(f"shapewright: the demo stopped: {error}", markup=False)
         raise typer.Exit(1) from None
+
+
+def _quick_settings(samples: int, seed: int) -> dict[str, Any]:
+    """Settings for a first look, in the form that the service takes them."""
+    from shapewright.estimation.settings import EstimationSettings
+
+    names = ("samples", "seed", "surface_points", "image_size", "subdivision_steps", "step_sizes")
+    settings = EstimationSettings.quick(samples=samples, seed=seed).to_dict()
+    return {name: settings[name] for name in names}
 
 
 def _refuse_early(query: Path) -> None:
@@ -114,7 +129,7 @@ def _walk(
     query: Path,
     output: Path,
     training: dict[str, int],
-    estimating: dict[str, int],
+    estimating: dict[str, Any],
 ) -> dict[str, Any]:
     """Take the steps 2 to 5; return what they found."""
     _step(console, 2, "upload the procedural models")

@@ -15,7 +15,7 @@ from PIL import Image
 
 from shapewright.mesh_file import load_mesh
 
-SMALL = ("--variations", "16", "--images", "4", "--samples", "60")
+SMALL = ("--variations", "12", "--images", "4", "--samples", "30")
 
 
 def _environment() -> dict[str, str]:
@@ -24,8 +24,11 @@ def _environment() -> dict[str, str]:
 
 @pytest.mark.timeout(300)
 def test_the_demo_once_on_its_sample(repository: Path, tmp_path: Path) -> None:
+    coarse = tmp_path / "coarse.json"
+    coarse.write_text('{"surface_points": 200, "image_size": 64, "step_sizes": [0.5, 0.1]}')
+    options = ("--samples", "100", "--settings", coarse, "--output", tmp_path / "out")
     done = subprocess.run(
-        [sys.executable, "-m", "cli", "demo", "--once", "--json", *SMALL, "--output", tmp_path / "out"],
+        [sys.executable, "-m", "cli", "demo", "--once", "--json", *options],
         capture_output=True,
         text=True,
         cwd=tmp_path,
@@ -45,13 +48,15 @@ def test_the_demo_once_on_its_sample(repository: Path, tmp_path: Path) -> None:
     assert (pixels != pixels[0, 0]).any()
     fitted, query = load_mesh(report["mesh_file"]), load_mesh(repository / "examples" / "goblet.ply")
     assert np.abs(fitted.bounds - query.bounds).max() < 0.35 * np.ptp(query.bounds, axis=0).max()
-    leftover = [path for path in tmp_path.iterdir() if path.name != "out"]
+    leftover = [path for path in tmp_path.iterdir() if path.name not in ("out", "coarse.json")]
     assert leftover == [], "the service's folder was temporary"
 
 
 @pytest.mark.timeout(300)
 def test_it_keeps_serving_and_uses_a_kept_folder_again(tmp_path: Path) -> None:
-    arguments = [*SMALL, "--data-dir", str(tmp_path / "data"), "--output", str(tmp_path / "out")]
+    coarse = tmp_path / "coarse.json"
+    coarse.write_text('{"surface_points": 50, "image_size": 16, "subdivision_steps": 0, "step_sizes": [0.5]}')
+    arguments = [*SMALL, "--data-dir", str(tmp_path / "data"), "--output", str(tmp_path / "out"), "--settings", coarse]
     mesh = tmp_path / "sword.off"
     command = [sys.executable, "-m", "cli"]
     subprocess.run([*command, "instance", "sword", "-o", mesh], check=True, capture_output=True)

@@ -22,7 +22,14 @@ if TYPE_CHECKING:
     from shapewright.modeling import ProceduralModel
 
 TRAINING = {"variations": 12, "images_per_variation": 4, "seed": 1}
-ESTIMATING = {"samples": 40, "surface_points": 300, "image_size": 64, "subdivision_steps": 1, "seed": 1}
+ESTIMATING = {
+    "samples": 40,
+    "surface_points": 300,
+    "image_size": 64,
+    "subdivision_steps": 1,
+    "seed": 1,
+    "step_sizes": [0.5, 0.1],
+}
 
 
 def _command(repository: Path, service: str) -> list[str]:
