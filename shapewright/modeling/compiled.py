@@ -2,6 +2,7 @@
 
 import math
 import threading
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -59,15 +60,13 @@ class CompiledModel:
         self.model = model
         mesh = ControlMesh()
         steps = []
+        bindings: dict[int, list[tuple[int, str]]] = defaultdict(list)
+        for column, parameter in enumerate(model.parameters):
+            for target in parameter.targets:
+                bindings[target.operation].append((column, target.mode))
         for index, operation in enumerate(model.operations):
-            bindings = tuple(
-                (column, target.mode)
-                for column, parameter in enumerate(model.parameters)
-                for target in parameter.targets
-                if target.operation == index
-            )
             try:
-                steps.append(_BoundStep(operation.apply(mesh), operation, bindings))
+                steps.append(_BoundStep(operation.apply(mesh), operation, tuple(bindings[index])))
             except ModelError as error:
                 raise ModelError(error.message, where=f"operations[{index}]") from None
         self._steps = tuple(steps)
@@ -136,7 +135,11 @@ class CompiledModel:
         Raises:
             ParameterError: the array has not P columns or holds NaN.
         """
-        return np.ascontiguousarray(self._control_rows(self._checked(values)).transpose(1, 0, 2))
+        values = self._checked(values)
+        points = np.empty((len(values), len(self._live), 3))
+        for rows in self._batches(len(values), self._n_created):
+            points[rows] = self._control_rows(values[rows]).transpose(2, 0, 1)
+        return points
 
     def surface_points(
         self, values: Float[np.ndarray, "B P"], steps: int = SUBDIVISION_STEPS
@@ -166,14 +169,13 @@ class CompiledModel:
         """
         values = self._checked(values)
         n_vertices = self.surface_polygons(steps).n_vertices
-        size = max(1, _CHUNK_BYTES // (24 * max(n_vertices, self._n_created)))
-        for start in range(0, len(values), size):
-            rows = self._control_rows(values[start : start + size])
-            count = rows.shape[1]
-            flat = rows.reshape(len(rows), count * 3)
+        for rows in self._batches(len(values), max(n_vertices, self._n_created)):
+            controls = self._control_rows(values[rows])
+            count = controls.shape[2]
+            flat = controls.reshape(-1, 3 * count)
             for level in self._levels[:steps]:
                 flat = level.matrix @ flat
-            yield start, np.ascontiguousarray(flat.reshape(-1, count, 3).transpose(1, 0, 2))
+            yield rows.start, np.ascontiguousarray(flat.reshape(-1, 3, count).transpose(2, 0, 1))
 
     def surface_polygons(self, steps: int = SUBDIVISION_STEPS) -> Polygons:
         """Return the topology after ``steps`` subdivisions; raises ModelError if that is out of range."""
@@ -207,8 +209,12 @@ class CompiledModel:
     def _default_triangles(self) -> Int[np.ndarray, "F 3"]:
         return self.surface_polygons(SUBDIVISION_STEPS).triangles()
 
+    def _batches(self, count: int, n_vertices: int) -> Iterator[slice]:
+        size = max(1, _CHUNK_BYTES // (24 * n_vertices))
+        return (slice(start, start + size) for start in range(0, count, size))
+
     def _control_rows(self, values: Values) -> Positions:
-        positions = np.zeros((self._n_created, len(values), 3))
+        positions = np.zeros((self._n_created, 3, len(values)))
         for bound in self._steps:
             bound.step.move(positions, bound.quantities(values))
         return positions[self._live]

@@ -12,6 +12,9 @@ from shapewright.modeling.elements import Element
 Loop = tuple[int, ...]
 
 MAX_VERTICES = 200_000
+MAX_CORNERS = 1024
+MAX_WORK = 10_000_000
+"""Bound on the work of one instance, in vertices gathered and moved (:meth:`ControlMesh.spend`)."""
 
 
 class ControlMesh:
@@ -32,6 +35,9 @@ class ControlMesh:
         self._next_face = 0
         self._next_edge = 0
         self._component_of: list[int] = []
+        self._vertices_of_component: list[list[int]] = []
+        self._walked: set[tuple[int, int]] = set()  # every (from, to) of every face
+        self._work = 0
         self._edge_ids: dict[tuple[int, int], int] = {}
         self._edge_faces: dict[int, list[int]] = {}
         self._vertex_edges: dict[int, list[int]] = {}
@@ -83,7 +89,8 @@ class ControlMesh:
         Raises:
             ModelError: an element does not exist.
         """
-        return list(dict.fromkeys(v for element in elements for v in self._vertices_of_one(element)))
+        distinct = dict.fromkeys(elements)
+        return list(dict.fromkeys(v for element in distinct for v in self._vertices_of_one(element)))
 
     def _vertices_of_one(self, element: Element) -> Sequence[int]:
         if element.kind == "face":
@@ -93,9 +100,22 @@ class ControlMesh:
         if element.kind == "vertex":
             self.edges_of_vertex(element.id)
             return (element.id,)
-        if element.id >= self.n_components:
-            raise ModelError(f"component c{element.id} does not exist here")
-        return [v for v in self.live_vertices() if self._component_of[v] == element.id]
+        return self.vertices_of_component(element.id)
+
+    def check_component(self, component: int) -> None:
+        """Raise ModelError if there was never such a component."""
+        if component >= self.n_components:
+            raise ModelError(f"component c{component} does not exist here")
+
+    def vertices_of_component(self, component: int) -> list[int]:
+        """Return the live vertices of a component, in order; raises ModelError if there is no such component."""
+        self.check_component(component)
+        return [v for v in self._vertices_of_component[component] if self._vertex_edges.get(v)]
+
+    def faces_of_component(self, component: int) -> list[int]:
+        """Return the faces whose first corner belongs to a component, in order; raises ModelError as above."""
+        around = {f for v in self.vertices_of_component(component) for f in self.faces_of_vertex(v)}
+        return sorted(f for f in around if self._component_of[self.faces[f][0]] == component)
 
     def is_closed(self) -> bool:
         """Tell whether every edge has two faces."""
@@ -103,8 +123,19 @@ class ControlMesh:
 
     # ------------------------------------------------------------------ changes
 
+    def spend(self, work: int) -> None:
+        """Count work that an operation will do for every instance, about one unit for each vertex that it touches.
+
+        Raises:
+            ModelError: it is more than ``MAX_WORK``; a small document of a stranger can select everything very often.
+        """
+        self._work += work
+        if self._work > MAX_WORK:
+            raise ModelError(f"the operations up to here are too much work: more than {MAX_WORK} moves of vertices")
+
     def add_component(self) -> int:
         """Start a new component; return its id."""
+        self._vertices_of_component.append([])
         self.n_components += 1
         return self.n_components - 1
 
@@ -117,6 +148,7 @@ class ControlMesh:
         if self.n_vertices >= MAX_VERTICES:
             raise ModelError(f"a control mesh of more than {MAX_VERTICES} vertices is refused")
         self._component_of.append(component)
+        self._vertices_of_component[component].append(self.n_vertices)
         self.n_vertices += 1
         return self.n_vertices - 1
 
@@ -128,7 +160,8 @@ class ControlMesh:
         """Add a face and the edges that it lacks; return its id.
 
         Raises:
-            ModelError: fewer than three vertices, one of them twice, or an edge that has two faces already.
+            ModelError: fewer than three vertices or more than ``MAX_CORNERS``, one of them twice, an edge that has
+                two faces already, or one that its other face walks in the same direction.
         """
         face_id = self._next_face
         self._next_face += 1
@@ -190,8 +223,13 @@ class ControlMesh:
 
         Returns:
             The new vertex and the new edge.
+
+        Raises:
+            ModelError: the edge does not exist, or a face would get more than ``MAX_CORNERS``.
         """
         start, end = self.edge(edge_id)
+        if any(len(self.faces[face_id]) >= MAX_CORNERS for face_id in self._edge_faces[edge_id]):
+            raise ModelError(f"a face of more than {MAX_CORNERS} corners is refused")
         middle = self.add_vertex(self.component_of(start))
         del self._edge_ids[_key(start, end)]
         self._vertex_edges[end].remove(edge_id)
@@ -202,6 +240,10 @@ class ControlMesh:
         self._edge_faces[new_edge] = list(self._edge_faces[edge_id])
         if edge_id in self.sharp_edges:
             self.sharp_edges.add(new_edge)
+        for first, second in ((start, end), (end, start)):
+            if (first, second) in self._walked:
+                self._walked.remove((first, second))
+                self._walked |= {(first, middle), (middle, second)}
         for face_id in self._edge_faces[edge_id]:
             self.faces[face_id] = _with_middle(self.faces[face_id], start, end, middle)
         return middle, new_edge
@@ -209,14 +251,19 @@ class ControlMesh:
     def _link(self, face_id: int, loop: Loop) -> None:
         if len(loop) < 3:
             raise ModelError("a face needs at least three vertices")
+        if len(loop) > MAX_CORNERS:
+            raise ModelError(f"a face of more than {MAX_CORNERS} corners is refused")
         if len(set(loop)) != len(loop):
             raise ModelError("a face would use a vertex twice")
         pairs = list(zip(loop, (*loop[1:], loop[0]), strict=True))
         for first, second in pairs:
-            existing = self._edge_ids.get(_key(first, second))
-            if existing is not None and len(self._edge_faces[existing]) >= 2:
-                raise ModelError(f"edge e{existing} (v{first}, v{second}) would get a third face")
+            if (first, second) in self._walked:
+                existing = self._edge_ids[_key(first, second)]
+                third = len(self._edge_faces[existing]) >= 2
+                problem = "would get a third face" if third else "would join faces that are wound against each other"
+                raise ModelError(f"edge e{existing} (v{first}, v{second}) {problem}")
         self.faces[face_id] = loop
+        self._walked.update(pairs)
         for first, second in pairs:
             edge_id = self._edge_ids.get(_key(first, second))
             if edge_id is None:
@@ -230,6 +277,7 @@ class ControlMesh:
         loop = self.face(face_id)
         for first, second in zip(loop, (*loop[1:], loop[0]), strict=True):
             self._edge_faces[self._edge_ids[_key(first, second)]].remove(face_id)
+            self._walked.remove((first, second))
         del self.faces[face_id]
         return loop
 
@@ -256,8 +304,11 @@ def _key(first: int, second: int) -> tuple[int, int]:
 
 
 def _with_middle(loop: Loop, start: int, end: int, middle: int) -> Loop:
-    """Insert ``middle`` between two neighbours of a loop, in whichever direction the loop walks them."""
+    """Insert ``middle`` between two neighbours of a loop, in whichever direction the loop walks them.
+
+    The loop goes on starting where it did, as its first edge gives the face its frame.
+    """
     index = loop.index(start)
     after = loop[(index + 1) % len(loop)] == end
-    position = index + 1 if after else index
+    position = index + 1 if after else index or len(loop)
     return (*loop[:position], middle, *loop[position:])

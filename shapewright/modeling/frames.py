@@ -3,24 +3,28 @@
 PAPER-NOTES, section 3: the frame of a face has its normal as z, its first edge projected into the plane as u, and
 v = z x u. A vertex or an edge takes the mean normal of the faces around it and u from its first edge.
 
-Positions inside the kernel are ``(V, B, 3)``: one row a vertex, so that gathering vertices copies whole rows and a
-subdivision step is one product with a sparse matrix.
+Positions inside the kernel are ``(V, 3, B)``: the batch lies innermost, so that every sum runs over contiguous
+numbers, gathering vertices copies whole rows, and a subdivision step is one product with a sparse matrix.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from shapewright.modeling.control_mesh import ControlMesh, Loop
 from shapewright.modeling.elements import Element, Target, image_matrix
 
-Positions = Float[np.ndarray, "V B 3"]
-Points = Float[np.ndarray, "N B 3"]
-Vectors = Float[np.ndarray, "B 3"]
-Frames = Float[np.ndarray, "B 3 3"]
+Positions = Float[np.ndarray, "V 3 B"]
+Vectors = Float[np.ndarray, "T 3 B"]
+Frames = Float[np.ndarray, "T 3 3 B"]
 
 _TINY = 1e-12
+_FLAT = 1e-9
+
+TARGET_WORK = 500
+CORNER_WORK = 5
+"""What a frame and each corner that it looks at cost, in units of :meth:`ControlMesh.spend` (measured)."""
 
 
 @dataclass(frozen=True)
@@ -30,39 +34,66 @@ class FrameSource:
     loops: tuple[Loop, ...]
     first_edge: tuple[int, int]
 
-    def evaluate(self, positions: Positions) -> Frames:
-        """Return the frames, (B, 3, 3), with u, v and z as columns.
-
-        Where an instance has no normal (a collapsed face) z falls back to the world's z, and u to any direction
-        across it, so that frames are always orthonormal and finite.
-        """
-        normal = _unit(sum((_unit(newell_normal(positions[list(loop)]), 2) for loop in self.loops), np.zeros(3)), 2)
-        along = positions[self.first_edge[1]] - positions[self.first_edge[0]]
-        u = along - _dot(along, normal) * normal
-        flat = _dot(u, u) <= _TINY * np.maximum(_dot(along, along), _TINY)
-        u = _unit(np.where(flat, _across(normal), u), 0)
-        return np.stack([u, np.cross(normal, u), normal], axis=-1)
-
 
 @dataclass(frozen=True)
 class WorldFrame:
     """The axes of the model."""
 
+
+class TargetFrames:
+    """The frames of the T targets of one operation, evaluated together.
+
+    Targets with an image take the image of the first target's frame (left-handed for a mirror).
+    """
+
+    def __init__(
+        self, sources: list[FrameSource | WorldFrame], images: list[Float[np.ndarray, "3 3"] | None] | None = None
+    ) -> None:
+        images = images or [None] * len(sources)
+        self._n_targets = len(sources)
+        self._imaged = [i for i, image in enumerate(images) if image is not None]
+        self._matrices = np.array([image for image in images if image is not None]).reshape(-1, 3, 3)
+        own = [(i, s) for i, s in enumerate(sources) if isinstance(s, FrameSource) and images[i] is None]
+        self._own = [i for i, _ in own]
+        loops = [loop for _, source in own for loop in source.loops]
+        self._corners = np.array([v for loop in loops for v in loop], dtype=np.int64)
+        self._following = np.array([v for loop in loops for v in (*loop[1:], loop[0])], dtype=np.int64)
+        self._centres = np.array([loop[0] for loop in loops for _ in loop], dtype=np.int64)
+        self._loop_starts = _starts([len(loop) for loop in loops])
+        self._source_starts = _starts([len(source.loops) for _, source in own])
+        self._first_edges = np.array([source.first_edge for _, source in own], dtype=np.int64).reshape(-1, 2)
+
     def evaluate(self, positions: Positions) -> Frames:
-        """Return one identity for each instance of the batch."""
-        return np.broadcast_to(np.eye(3), (positions.shape[1], 3, 3))
+        """Return the frames, (T, 3, 3, B), with u, v and z as columns.
 
+        Where an instance has no normal (a collapsed face) z falls back to the world's z, and u to any direction
+        across it, so that frames are always orthonormal and finite.
+        """
+        frames = np.zeros((self._n_targets, 3, 3, positions.shape[2]))
+        frames[:, (0, 1, 2), (0, 1, 2)] = 1.0
+        if self._own:
+            frames[self._own] = self._own_frames(positions)
+        if self._imaged:
+            frames[self._imaged] = np.einsum("tij,jkb->tikb", self._matrices, frames[0])
+        return frames
 
-@dataclass(frozen=True)
-class ImageFrame:
-    """The image of another frame under a mirror or a turn (left-handed for a mirror)."""
-
-    source: FrameSource | WorldFrame
-    matrix: Float[np.ndarray, "3 3"]
-
-    def evaluate(self, positions: Positions) -> Frames:
-        """Return the images of the source's frames."""
-        return np.matmul(self.matrix, self.source.evaluate(positions))
+    def _own_frames(self, positions: Positions) -> Frames:
+        centres = positions[self._centres]
+        spokes, following = positions[self._corners] - centres, positions[self._following] - centres
+        normals = np.add.reduceat(cross(spokes, following), self._loop_starts, axis=0)
+        extents = np.maximum.reduceat(_dot(spokes, spokes), self._loop_starts, axis=0)
+        # Relative to the face's size, so that a model may be as small as it likes; a collapsed face has no say.
+        normals = _unit(normals, np.zeros(3), np.maximum(_FLAT * extents, _TINY * _TINY))
+        if len(self._source_starts) < len(self._loop_starts):
+            normals = np.add.reduceat(normals, self._source_starts, axis=0)
+        normal = _unit(normals, np.array([0.0, 0.0, 1.0]), _TINY)
+        along = positions[self._first_edges[:, 1]] - positions[self._first_edges[:, 0]]
+        u = along - _dot(along, normal) * normal
+        square, floor = _dot(u, u), _TINY * np.maximum(_dot(along, along), _TINY * _TINY)
+        if (square <= floor).any():
+            u = np.where(square <= floor, _across(normal), u)
+        u = u / np.sqrt(_dot(u, u))
+        return np.stack([u, cross(normal, u), normal], axis=2)
 
 
 def frame_of_element(mesh: ControlMesh, element: Element) -> FrameSource | WorldFrame:
@@ -82,21 +113,23 @@ def frame_of_element(mesh: ControlMesh, element: Element) -> FrameSource | World
         other = second if first == element.id else first
         faces = mesh.faces_of_vertex(element.id)
         return FrameSource(tuple(mesh.face(f) for f in faces), (element.id, other))
-    mesh.vertices_of([element])
+    mesh.check_component(element.id)
     return WorldFrame()
 
 
-def frames_of_targets(mesh: ControlMesh, targets: tuple[Target, ...]) -> list[FrameSource | WorldFrame | ImageFrame]:
-    """Return the frame of each target; images are images of the first target's frame.
+def frames_of_targets(mesh: ControlMesh, targets: tuple[Target, ...]) -> TargetFrames:
+    """Return the frames of the targets; images are images of the first target's frame.
 
     Raises:
-        ModelError: an element does not exist.
+        ModelError: an element does not exist, or the frames are too much work.
     """
-    sources = [_plain_frame(mesh, target) for target in targets]
-    return [
-        ImageFrame(sources[0], image_matrix(target.image)) if target.image else source
-        for source, target in zip(sources, targets, strict=True)
-    ]
+    sources = []
+    for target in targets:
+        source = _plain_frame(mesh, target)
+        corners = sum(map(len, source.loops)) if isinstance(source, FrameSource) else 0
+        mesh.spend(TARGET_WORK + CORNER_WORK * corners)
+        sources.append(source)
+    return TargetFrames(sources, [image_matrix(target.image) if target.image else None for target in targets])
 
 
 def _plain_frame(mesh: ControlMesh, target: Target) -> FrameSource | WorldFrame:
@@ -105,24 +138,43 @@ def _plain_frame(mesh: ControlMesh, target: Target) -> FrameSource | WorldFrame:
     return frame_of_element(mesh, target.elements[0] if target.frame == "own" else target.frame)
 
 
-def newell_normal(points: Points) -> Vectors:
-    """Return twice the area vector of a polygon that need not be flat (M. Newell's method)."""
-    following = np.concatenate([points[1:], points[:1]])
-    centre = points[0]
-    return np.cross(points - centre, following - centre).sum(axis=0)
+class Centres:
+    """The means of T lists of vertices, evaluated together."""
+
+    def __init__(self, lists: list[list[int]]) -> None:
+        self._vertices = np.array([v for vertices in lists for v in vertices], dtype=np.int64)
+        self._starts = _starts([len(vertices) for vertices in lists])
+        self._counts = np.array([len(vertices) for vertices in lists], dtype=np.float64)[:, None, None]
+
+    def evaluate(self, positions: Positions) -> Vectors:
+        """Return the means, (T, 3, B)."""
+        return np.add.reduceat(positions[self._vertices], self._starts, axis=0) / self._counts
 
 
-def _dot(first: Vectors, second: Vectors) -> Float[np.ndarray, "B 1"]:
-    return np.einsum("bi,bi->b", first, second)[:, None]
+def cross(first: Vectors, second: Vectors) -> Vectors:
+    """Return the cross products of rows of vectors."""
+    ax, ay, az = first[:, 0], first[:, 1], first[:, 2]
+    bx, by, bz = second[:, 0], second[:, 1], second[:, 2]
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
 
 
-def _unit(vectors: Vectors, fallback_axis: int) -> Vectors:
+def _starts(lengths: list[int]) -> Int[np.ndarray, " N"]:
+    return np.cumsum([0, *lengths[:-1]]) if lengths else np.zeros(0, dtype=np.int64)
+
+
+def _dot(first: Vectors, second: Vectors) -> Float[np.ndarray, "T 1 B"]:
+    return np.einsum("tib,tib->tb", first, second)[:, None]
+
+
+def _unit(vectors: Vectors, fallback: Float[np.ndarray, "3"], smallest: Float[np.ndarray, "T 1 B"] | float) -> Vectors:
     length = np.sqrt(_dot(vectors, vectors))
-    fallback = np.eye(3)[fallback_axis]
-    return np.where(length > _TINY, vectors / np.maximum(length, _TINY), fallback)
+    short = length <= smallest
+    if not short.any():
+        return vectors / length
+    return np.where(short, fallback[:, None], vectors / np.where(short, 1.0, length))
 
 
 def _across(normal: Vectors) -> Vectors:
     """Return a direction that is surely not along the normal, made perpendicular to it."""
-    axis = np.eye(3)[np.argmin(np.abs(normal), axis=1)]
+    axis = np.moveaxis(np.eye(3)[np.argmin(np.abs(normal), axis=1)], -1, 1)
     return axis - _dot(axis, normal) * normal

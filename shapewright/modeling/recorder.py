@@ -4,7 +4,6 @@ Every call carries out an operation on the object as it is at x = 1 and appends 
 where things are (:meth:`Recorder.centre`, :meth:`Recorder.faces_towards`) and refer to what it made.
 """
 
-import copy
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -15,7 +14,7 @@ from jaxtyping import Float
 from shapewright.errors import ModelError
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.elements import Axis, Element, Image, Mirror, Target, Turn, edge, face
-from shapewright.modeling.frames import frame_of_element, newell_normal
+from shapewright.modeling.frames import TargetFrames, frame_of_element
 from shapewright.modeling.operations import (
     OPERATIONS,
     Base,
@@ -81,7 +80,7 @@ class Recorder:
         self.description = description
         self.closed = closed
         self.mesh = ControlMesh()
-        self._positions: Float[np.ndarray, "V 1 3"] = np.zeros((0, 1, 3))
+        self._positions: Float[np.ndarray, "V 3 1"] = np.zeros((0, 3, 1))
         self._operations: list[Operation] = []
         self._declared: dict[str, Parameter] = {}
         self._targets: dict[str, list[ParameterTarget]] = {}
@@ -231,7 +230,7 @@ class Recorder:
 
     def positions(self, element: Element) -> Float[np.ndarray, "N 3"]:
         """Return where the vertices of an element are now."""
-        return self._positions[self.mesh.vertices_of([element]), 0]
+        return self._positions[self.mesh.vertices_of([element]), :, 0]
 
     def centre(self, element: Element) -> Float[np.ndarray, "3"]:
         """Return the mean of the vertices of an element."""
@@ -240,13 +239,14 @@ class Recorder:
 
     def normal(self, element: Element) -> Float[np.ndarray, "3"]:
         """Return the unit normal of a face."""
-        points = newell_normal(self._positions[list(self.mesh.face(element.id))])[0]
-        unit: Float[np.ndarray, 3] = points / np.linalg.norm(points)
-        return unit
+        self.mesh.face(element.id)
+        return self.frame(element)[:, 2]
 
     def frame(self, element: Element) -> Float[np.ndarray, "3 3"]:
         """Return the local frame of an element with u, v and z as columns."""
-        frame: Float[np.ndarray, "3 3"] = frame_of_element(self.mesh, element).evaluate(self._positions)[0]
+        frame: Float[np.ndarray, "3 3"] = TargetFrames([frame_of_element(self.mesh, element)]).evaluate(
+            self._positions
+        )[0, :, :, 0]
         return frame
 
     def edges_of(self, element: Element) -> list[Element]:
@@ -332,13 +332,12 @@ class Recorder:
         document = operation.to_document()
         # What is recorded is what a document says: checked, and numbers of any kind as they will be read.
         operation = OPERATIONS[document.pop("op")].from_document(document, f"operations[{index}]")
-        mesh = copy.deepcopy(self.mesh)  # a refused operation leaves everything as it was
         try:
-            step = operation.apply(mesh)
+            step = operation.apply(self.mesh)
         except ModelError as error:
+            self.mesh = _replayed(self._operations)  # a refused operation leaves everything as it was
             raise ModelError(error.message, where=f"operations[{index}] ({operation.kind})") from None
-        self.mesh = mesh
-        grown = np.zeros((self.mesh.n_vertices, 1, 3))
+        grown = np.zeros((self.mesh.n_vertices, 3, 1))
         grown[: len(self._positions)] = self._positions
         self._positions = grown
         step.move(
@@ -350,14 +349,21 @@ class Recorder:
             self._targets.setdefault(name, []).append(ParameterTarget(index, mode))
 
     def _best_shift(self, first: Element, second: Element) -> int:
-        outline = self._positions[list(self.mesh.face(first.id)), 0]
-        facing = self._positions[list(self.mesh.face(second.id))[::-1], 0]
+        outline = self._positions[list(self.mesh.face(first.id)), :, 0]
+        facing = self._positions[list(self.mesh.face(second.id))[::-1], :, 0]
         if len(outline) != len(facing):
             return 0
         lengths = [
             np.linalg.norm(outline - np.roll(facing, -shift, axis=0), axis=1).sum() for shift in range(len(outline))
         ]
         return int(np.argmin(lengths))
+
+
+def _replayed(operations: Iterable[Operation]) -> ControlMesh:
+    mesh = ControlMesh()
+    for operation in operations:
+        operation.apply(mesh)
+    return mesh
 
 
 def group(*elements: Element, frame: Literal["own", "world"] | Element = "own") -> Target:

@@ -10,7 +10,7 @@ from shapewright.errors import ModelError
 from shapewright.modeling.control_mesh import ControlMesh, Loop
 from shapewright.modeling.elements import Target, image_matrix
 from shapewright.modeling.fields import TARGETS, VECTOR, choice, field, integer
-from shapewright.modeling.frames import FrameSource, ImageFrame, Positions, WorldFrame, frames_of_targets
+from shapewright.modeling.frames import Centres, Positions, TargetFrames, frames_of_targets
 from shapewright.modeling.operations.operation import Operation, Quantities, Step
 
 MAX_SIDES = 256
@@ -53,6 +53,9 @@ class Base(Operation):
         anchors = self.anchors or (Target((), "world"),)
         frames = frames_of_targets(mesh, anchors)
         origins = [mesh.vertices_of(anchor.elements) for anchor in anchors]
+        mesh.spend(sum(map(len, origins)))
+        placed = [i for i, origin in enumerate(origins) if origin]
+        centres = Centres([origins[i] for i in placed])
         points, loops = self._shape()
         first_vertex = mesh.n_vertices
         for anchor in anchors:
@@ -62,7 +65,7 @@ class Base(Operation):
             for loop in loops:
                 corner_ids = [ids[corner] for corner in loop]
                 mesh.add_face(corner_ids[:1] + corner_ids[:0:-1] if mirrored else corner_ids)
-        return _PlaceBase(points + np.array(self.offset), first_vertex, tuple(frames), tuple(map(tuple, origins)))
+        return _PlaceBase(points + np.array(self.offset), first_vertex, frames, tuple(placed), centres)
 
     def _shape(self) -> tuple[Float[np.ndarray, "N 3"], list[Loop]]:
         x, y, z = self.size
@@ -78,21 +81,22 @@ class Base(Operation):
         return _ring(self.size, self.sides, self.tube_sides)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _PlaceBase:
+    """Copies of the points, one for each frame; those in ``placed`` around centres, the others around the origin."""
+
     points: Float[np.ndarray, "N 3"]
     first_vertex: int
-    frames: tuple[FrameSource | WorldFrame | ImageFrame, ...]
-    origins: tuple[tuple[int, ...], ...]
+    frames: TargetFrames
+    placed: tuple[int, ...]
+    centres: Centres
 
     def move(self, positions: Positions, quantities: Quantities) -> None:
-        n_points = len(self.points)
-        for copy, (frame, origin) in enumerate(zip(self.frames, self.origins, strict=True)):
-            start = self.first_vertex + copy * n_points
-            placed = np.einsum("bij,nj->nbi", frame.evaluate(positions), self.points)
-            if origin:
-                placed = placed + positions[list(origin)].mean(axis=0)
-            positions[start : start + n_points] = placed
+        copies = np.einsum("tijb,nj->tnib", self.frames.evaluate(positions), self.points)
+        if self.placed:
+            copies[list(self.placed)] += self.centres.evaluate(positions)[:, None]
+        rows = copies.reshape(-1, *positions.shape[1:])
+        positions[self.first_vertex : self.first_vertex + len(rows)] = rows
 
 
 def _prism(corners: Float[np.ndarray, "N 2"], height: float) -> tuple[Float[np.ndarray, "M 3"], list[Loop]]:

@@ -10,7 +10,7 @@ from shapewright.modeling.fields import NUMBER, TARGETS, field
 from shapewright.modeling.frames import Positions
 from shapewright.modeling.operations.displacement import displacement
 from shapewright.modeling.operations.operation import Mode, Operation, Quantities, Step, multiplies, turns_phi
-from shapewright.modeling.operations.selection import MovedTarget, moved_targets
+from shapewright.modeling.operations.selection import MovedTargets, moved_targets
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,9 @@ class Drag(Operation):
 
 @dataclass(frozen=True)
 class _Dragged:
-    targets: tuple[MovedTarget, ...]
+    targets: MovedTargets
 
     def move(self, positions: Positions, quantities: Quantities) -> None:
-        ways = [displacement(target.frame.evaluate(positions), quantities) for target in self.targets]
-        for target, way in zip(self.targets, ways, strict=True):
-            positions[target.vertices] += way
+        ways = displacement(self.targets.frames.evaluate(positions), quantities)
+        for run in self.targets.runs:
+            positions[run.vertices] += ways if len(ways) == 1 else ways[run.targets]

@@ -4,11 +4,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+from jaxtyping import Int
+
 from shapewright.errors import ModelError
 from shapewright.modeling.control_mesh import ControlMesh, Loop
-from shapewright.modeling.elements import Target
+from shapewright.modeling.elements import Element, Target
 from shapewright.modeling.fields import NUMBER, TARGETS, field
-from shapewright.modeling.frames import FrameSource, ImageFrame, Positions, WorldFrame, frames_of_targets
+from shapewright.modeling.frames import Positions, TargetFrames, frames_of_targets
 from shapewright.modeling.operations.displacement import displacement
 from shapewright.modeling.operations.operation import Mode, Operation, Quantities, Step, multiplies, turns_phi
 
@@ -45,18 +48,37 @@ class Extrude(Operation):
         if not self.targets:
             raise ModelError("nothing is selected")
         frames = frames_of_targets(mesh, self.targets)
+        check_each_once(self.targets)
         loops = [single_face(mesh, target) for target in self.targets]
         lifted = [mesh.lift_face(target.elements[0].id) for target in self.targets]
-        return _Extruded(tuple(zip(frames, loops, lifted, strict=True)))
+        return _Extruded(
+            frames,
+            old=np.array([v for loop in loops for v in loop]),
+            new=np.array([v for loop in lifted for v in loop]),
+            targets=np.array([i for i, loop in enumerate(loops) for _ in loop]),
+        )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Extruded:
-    faces: tuple[tuple[FrameSource | WorldFrame | ImageFrame, Loop, Loop], ...]
+    frames: TargetFrames
+    old: Int[np.ndarray, " N"]
+    new: Int[np.ndarray, " N"]
+    targets: Int[np.ndarray, " N"]
 
     def move(self, positions: Positions, quantities: Quantities) -> None:
-        for frame, old, new in self.faces:
-            positions[list(new)] = positions[list(old)] + displacement(frame.evaluate(positions), quantities)
+        ways = displacement(self.frames.evaluate(positions), quantities)
+        positions[self.new] = positions[self.old] + (ways if len(ways) == 1 else ways[self.targets])
+
+
+def check_each_once(targets: tuple[Target, ...]) -> None:
+    """Raise ModelError if an element is in two targets."""
+    seen: set[Element] = set()
+    for target in targets:
+        for element in target.elements:
+            if element in seen:
+                raise ModelError(f"{element} is selected twice")
+            seen.add(element)
 
 
 def single_face(mesh: ControlMesh, target: Target) -> Loop:

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+from jaxtyping import Int
 
 from shapewright.errors import ModelError
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.elements import Element
 from shapewright.modeling.fields import DIRECTED_EDGES, NUMBER, field
-from shapewright.modeling.frames import Positions
+from shapewright.modeling.frames import TARGET_WORK, Positions
 from shapewright.modeling.operations.operation import Amounts, Mode, Operation, Quantities, Step
 
 
@@ -50,14 +51,28 @@ class InsertVertex(Operation):
             start, end = mesh.edge(edge.id)
             middle, _ = mesh.split_edge(edge.id)
             rows.append((middle, end, start) if backwards else (middle, start, end))
-        return _Inserted(tuple(rows))
+        mesh.spend(TARGET_WORK * len(rows))
+        return _Inserted(_runs(rows))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Inserted:
-    rows: tuple[tuple[int, int, int], ...]
+    runs: tuple[Int[np.ndarray, "3 N"], ...]
 
     def move(self, positions: Positions, quantities: Quantities) -> None:
-        share = quantities["lambda1"][:, None]
-        for middle, start, end in self.rows:
+        share = quantities["lambda1"]
+        for middle, start, end in self.runs:
             positions[middle] = share * positions[start] + (1.0 - share) * positions[end]
+
+
+def _runs(rows: list[tuple[int, int, int]]) -> tuple[Int[np.ndarray, "3 N"], ...]:
+    """Put rows together that do not build on each other: an edge may be split twice in one operation."""
+    runs: list[list[tuple[int, int, int]]] = [[]]
+    fresh: set[int] = set()
+    for middle, start, end in rows:
+        if start in fresh or end in fresh:
+            runs.append([])
+            fresh = set()
+        fresh.add(middle)
+        runs[-1].append((middle, start, end))
+    return tuple(np.array(run, dtype=np.int64).T for run in runs)

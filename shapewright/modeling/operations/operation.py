@@ -25,7 +25,7 @@ class Step(Protocol):
     """The geometric half of an operation, bound to the topology in which it was made."""
 
     def move(self, positions: Positions, quantities: Quantities) -> None:
-        """Set or change rows of ``positions`` (V, B, 3) in place."""
+        """Set or change rows of ``positions`` (V, 3, B) in place."""
 
 
 class NoMove:

@@ -15,7 +15,8 @@ class Remove(Operation):
     """Elements go, in the order given.
 
     A face leaves a hole. An edge leaves one face where two were (the one with the smaller id stays). A vertex with
-    two edges leaves a straight edge, with a new id; any other inner vertex leaves one face where its faces were.
+    two edges leaves a straight edge, with a new id, that is sharp if both were; any other inner vertex leaves one
+    face where its faces were.
     """
 
     kind: ClassVar[str] = "remove"
@@ -34,11 +35,18 @@ class Remove(Operation):
             elif element.kind == "vertex":
                 _remove_vertex(mesh, element.id)
             else:
-                for face_id in [f for f, loop in mesh.faces.items() if mesh.component_of(loop[0]) == element.id]:
-                    mesh.remove_face(face_id)
+                _remove_component(mesh, element)
         if not mesh.faces:
             raise ModelError("nothing is left of the mesh")
         return NO_MOVE
+
+
+def _remove_component(mesh: ControlMesh, component: Element) -> None:
+    faces = mesh.faces_of_component(component.id)
+    if not faces:
+        raise ModelError(f"component {component} has no faces left")
+    for face_id in faces:
+        mesh.remove_face(face_id)
 
 
 def _merge_faces(mesh: ControlMesh, edge_id: int) -> None:
@@ -66,8 +74,12 @@ def _remove_vertex(mesh: ControlMesh, vertex_id: int) -> None:
     edges = mesh.edges_of_vertex(vertex_id)
     faces = mesh.faces_of_vertex(vertex_id)
     if len(edges) == 2:
+        sharp = mesh.sharp_edges.issuperset(edges)
+        start, end = (next(v for v in mesh.edge(e) if v != vertex_id) for e in edges)
         loops = {f: tuple(v for v in mesh.face(f) if v != vertex_id) for f in faces}
         mesh.replace_loops(loops)
+        if sharp:
+            mesh.sharp_edges.add(mesh.edge_between(start, end))
         return
     if len(edges) != len(faces):
         raise ModelError(f"v{vertex_id} lies on a border; remove its faces instead")

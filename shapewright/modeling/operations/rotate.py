@@ -5,14 +5,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from jaxtyping import Float
 
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.elements import Element, Target
 from shapewright.modeling.fields import NUMBER, OPTIONAL_ELEMENT, TARGETS, choice, field
 from shapewright.modeling.frames import Positions
 from shapewright.modeling.operations.operation import Mode, Operation, Quantities, Step, multiplies
-from shapewright.modeling.operations.selection import MovedTarget, map_about_pivots, moved_targets
+from shapewright.modeling.operations.selection import MovedTargets, map_about_pivots, moved_targets
 
 
 @dataclass(frozen=True)
@@ -42,18 +41,15 @@ class Rotate(Operation):
 
 @dataclass(frozen=True)
 class _Rotated:
-    targets: tuple[MovedTarget, ...]
+    targets: MovedTargets
     axis: int
 
     def move(self, positions: Positions, quantities: Quantities) -> None:
         angle_rad = np.radians(quantities["alpha_deg"])
-        cosine, sine = np.cos(angle_rad), np.sin(angle_rad)
         first, second = (self.axis + 1) % 3, (self.axis + 2) % 3
-
-        def turn(local: Float[np.ndarray, "N B 3"]) -> Float[np.ndarray, "N B 3"]:
-            turned = local.copy()
-            turned[..., first] = cosine * local[..., first] - sine * local[..., second]
-            turned[..., second] = sine * local[..., first] + cosine * local[..., second]
-            return turned
-
+        turn = np.zeros((3, 3, positions.shape[2]))
+        turn[self.axis, self.axis] = 1.0
+        turn[first, first] = turn[second, second] = np.cos(angle_rad)
+        turn[second, first] = np.sin(angle_rad)
+        turn[first, second] = -turn[second, first]
         map_about_pivots(positions, self.targets, turn)

@@ -11,7 +11,7 @@ from shapewright.errors import ModelError
 from shapewright.modeling.control_mesh import ControlMesh, Loop
 from shapewright.modeling.elements import Element
 from shapewright.modeling.fields import ELEMENT, NUMBER, field
-from shapewright.modeling.frames import FrameSource, Positions, frame_of_element
+from shapewright.modeling.frames import Centres, FrameSource, Positions, TargetFrames, frame_of_element
 from shapewright.modeling.operations.operation import Mode, Operation, Quantities, Step, multiplies
 
 
@@ -54,26 +54,26 @@ class RotationExtrude(Operation):
             start, end = end, start
         normal_source = frame_of_element(mesh, self.face)
         assert isinstance(normal_source, FrameSource)
-        frame = FrameSource(normal_source.loops, (start, end))
-        return _Turned(frame, old, mesh.lift_face(self.face.id), self.angle_deg)
+        frame = TargetFrames([FrameSource(normal_source.loops, (start, end))])
+        return _Turned(frame, Centres([list(old)]), old, mesh.lift_face(self.face.id), self.angle_deg)
 
 
 @dataclass(frozen=True)
 class _Turned:
-    frame: FrameSource
+    frame: TargetFrames
+    centre: Centres
     old: Loop
     new: Loop
     angle_deg: float
 
     def move(self, positions: Positions, quantities: Quantities) -> None:
-        frames = self.frame.evaluate(positions)
-        outline = positions[list(self.old)]
-        centre = outline.mean(axis=0)
-        local = np.einsum("bji,nbj->nbi", frames, outline - centre)
-        local[..., 1] *= quantities["width"]
+        frame = self.frame.evaluate(positions)[0]
+        centre = self.centre.evaluate(positions)
+        local = np.einsum("jib,njb->nib", frame, positions[list(self.old)] - centre)
+        local[:, 1] *= quantities["width"]
         turn = Rotation.from_euler("x", self.angle_deg, degrees=True).as_matrix()
         normal = np.array([0.0, 0.0, 1.0])
         mean_normal = normal + turn @ normal
         mean_normal /= max(float(np.linalg.norm(mean_normal)), 1e-12)
-        moved = local @ turn.T + quantities["length"][:, None] * mean_normal
-        positions[list(self.new)] = centre + np.einsum("bij,nbj->nbi", frames, moved)
+        moved = np.einsum("ij,njb->nib", turn, local) + mean_normal[:, None] * quantities["length"]
+        positions[list(self.new)] = centre + np.einsum("ijb,njb->nib", frame, moved)

@@ -5,14 +5,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from jaxtyping import Float
 
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.elements import Element, Target
 from shapewright.modeling.fields import NUMBER, OPTIONAL_ELEMENT, TARGETS, choice, field
 from shapewright.modeling.frames import Positions
 from shapewright.modeling.operations.operation import Mode, Operation, Quantities, Step, multiplies
-from shapewright.modeling.operations.selection import MovedTarget, map_about_pivots, moved_targets
+from shapewright.modeling.operations.selection import MovedTargets, map_about_pivots, moved_targets
 
 LOCAL_AXES = {"uvz": (0, 1, 2), "uv": (0, 1), "uz": (0, 2), "vz": (1, 2), "u": (0,), "v": (1,), "z": (2,)}
 
@@ -44,14 +43,11 @@ class Scale(Operation):
 
 @dataclass(frozen=True)
 class _Scaled:
-    targets: tuple[MovedTarget, ...]
+    targets: MovedTargets
     axes: tuple[int, ...]
 
     def move(self, positions: Positions, quantities: Quantities) -> None:
-        factors = np.ones((len(quantities["sigma"]), 3))
-        factors[:, self.axes] = quantities["sigma"][:, None]
-
-        def stretch(local: Float[np.ndarray, "N B 3"]) -> Float[np.ndarray, "N B 3"]:
-            return local * factors
-
+        stretch = np.zeros((3, 3, positions.shape[2]))
+        for axis in range(3):
+            stretch[axis, axis] = quantities["sigma"] if axis in self.axes else 1.0
         map_about_pivots(positions, self.targets, stretch)

@@ -1,29 +1,42 @@
-"""Targets bound to a topology: which rows move, in which frame, about which point."""
+"""Targets bound to a topology: which rows move, in which frames, about which points."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from shapewright.errors import ModelError
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.elements import Element, Target
-from shapewright.modeling.frames import FrameSource, ImageFrame, Positions, WorldFrame, frames_of_targets
+from shapewright.modeling.frames import Centres, Positions, TargetFrames, frames_of_targets
 
 
-@dataclass(frozen=True)
-class MovedTarget:
-    """The vertices of a target, its frame and the vertices whose mean is its pivot."""
+@dataclass(frozen=True, eq=False)
+class Run:
+    """Vertices of consecutive targets that share none, so that all may move at once.
 
-    vertices: list[int]
-    frame: FrameSource | WorldFrame | ImageFrame
-    pivot: list[int]
+    Attributes:
+        vertices: the rows that move.
+        targets: the target of each.
+    """
+
+    vertices: Int[np.ndarray, " N"]
+    targets: Int[np.ndarray, " N"]
 
 
-def moved_targets(
-    mesh: ControlMesh, targets: tuple[Target, ...], pivot: Element | None = None
-) -> tuple[MovedTarget, ...]:
+@dataclass(frozen=True, eq=False)
+class MovedTargets:
+    """The frames of all targets, the vertices whose means are their pivots (one for all, or one each), and the rows.
+
+    Targets that share vertices are in different runs, which move one after the other.
+    """
+
+    frames: TargetFrames
+    pivots: Centres
+    runs: tuple[Run, ...]
+
+
+def moved_targets(mesh: ControlMesh, targets: tuple[Target, ...], pivot: Element | None = None) -> MovedTargets:
     """Bind targets to a topology.
 
     Args:
@@ -32,31 +45,46 @@ def moved_targets(
         pivot: the element about whose centre every target is scaled or turned; ``None`` means about its own.
 
     Raises:
-        ModelError: no target, an empty one, or an element that does not exist.
+        ModelError: no target, an empty one, an element that does not exist, or too much work.
     """
     if not targets or not all(target.elements for target in targets):
         raise ModelError("nothing is selected")
     frames = frames_of_targets(mesh, targets)
     fixed = mesh.vertices_of([pivot]) if pivot else None
-    bound = []
-    for target, frame in zip(targets, frames, strict=True):
+    moved = []
+    for target in targets:
         vertices = mesh.vertices_of(target.elements)
         if not vertices:
             raise ModelError("a selected component has no vertices left")
-        bound.append(MovedTarget(vertices, frame, fixed or vertices))
-    return tuple(bound)
+        mesh.spend(len(vertices))
+        moved.append(vertices)
+    return MovedTargets(frames, Centres([fixed] if fixed else moved), _runs(moved))
 
 
-LocalMap = Callable[[Float[np.ndarray, "N B 3"]], Float[np.ndarray, "N B 3"]]
+def _runs(moved: list[list[int]]) -> tuple[Run, ...]:
+    runs: list[list[tuple[int, int]]] = [[]]
+    taken: set[int] = set()
+    for target, vertices in enumerate(moved):
+        if not taken.isdisjoint(vertices):
+            runs.append([])
+            taken = set()
+        taken.update(vertices)
+        runs[-1] += [(vertex, target) for vertex in vertices]
+    return tuple(Run(*np.array(run, dtype=np.int64).T.copy()) for run in runs)
 
 
-def map_about_pivots(positions: Positions, targets: tuple[MovedTarget, ...], local_map: LocalMap) -> None:
-    """Apply a map to the local coordinates of each target, about its pivot, in place.
+def map_about_pivots(positions: Positions, targets: MovedTargets, local_map: Float[np.ndarray, "3 3 B"]) -> None:
+    """Apply a linear map of local coordinates to each target, about its pivot, in place.
 
     All frames and pivots are taken before anything moves, so targets do not depend on each other's order.
     """
-    frames = [target.frame.evaluate(positions) for target in targets]
-    pivots = [positions[target.pivot].mean(axis=0) for target in targets]
-    for target, frame, pivot in zip(targets, frames, pivots, strict=True):
-        local = np.einsum("bji,nbj->nbi", frame, positions[target.vertices] - pivot)
-        positions[target.vertices] = pivot + np.einsum("bij,nbj->nbi", frame, local_map(local))
+    frames = targets.frames.evaluate(positions)
+    maps = np.einsum("tijb,tkjb->tikb", np.einsum("tijb,jkb->tikb", frames, local_map), frames)
+    pivots = np.broadcast_to(targets.pivots.evaluate(positions), (len(maps), *positions.shape[1:]))
+    for run in targets.runs:
+        if len(maps) == 1:  # the common case needs no copy of the map for each vertex
+            positions[run.vertices] = pivots + np.einsum("ijb,njb->nib", maps[0], positions[run.vertices] - pivots)
+        else:
+            pivot = pivots[run.targets]
+            offsets = positions[run.vertices] - pivot
+            positions[run.vertices] = pivot + np.einsum("nijb,njb->nib", maps[run.targets], offsets)
