@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 SUBDIVISION_STEPS = 2
 """Surface sampling uses two steps (PAPER-NOTES, section 3)."""
 MAX_SUBDIVISION_STEPS = 4
-MAX_SURFACE_VERTICES = 4_000_000
+MAX_SURFACE_VERTICES = 1_000_000
+MAX_SURFACE_WEIGHTS = 10_000_000
+"""Bound on the entries of a subdivision matrix; a face of n corners makes about n x n of them."""
 _CHUNK_BYTES = 64 * 2**20
 
 Values = Float[np.ndarray, "B P"]
@@ -64,13 +66,17 @@ class CompiledModel:
         for column, parameter in enumerate(model.parameters):
             for target in parameter.targets:
                 bindings[target.operation].append((column, target.mode))
+        most_work = 0
         for index, operation in enumerate(model.operations):
+            work_before = mesh.work
             try:
                 steps.append(_BoundStep(operation.apply(mesh), operation, tuple(bindings[index])))
             except ModelError as error:
                 raise ModelError(error.message, where=f"operations[{index}]") from None
+            most_work = max(most_work, mesh.work - work_before)
         self._steps = tuple(steps)
         self._n_created = mesh.n_vertices
+        self._row_bytes = 24 * max(mesh.n_vertices, most_work)  # of one instance, while a step is at work
         self._live = np.array(mesh.live_vertices(), dtype=np.int64)
         self._control = _compact(mesh, self._live)
         self.is_closed = mesh.is_closed()
@@ -137,7 +143,7 @@ class CompiledModel:
         """
         values = self._checked(values)
         points = np.empty((len(values), len(self._live), 3))
-        for rows in self._batches(len(values), self._n_created):
+        for rows in self._batches(len(values), self._row_bytes):
             points[rows] = self._control_rows(values[rows]).transpose(2, 0, 1)
         return points
 
@@ -169,7 +175,7 @@ class CompiledModel:
         """
         values = self._checked(values)
         n_vertices = self.surface_polygons(steps).n_vertices
-        for rows in self._batches(len(values), max(n_vertices, self._n_created)):
+        for rows in self._batches(len(values), max(24 * n_vertices, self._row_bytes)):
             controls = self._control_rows(values[rows])
             count = controls.shape[2]
             flat = controls.reshape(-1, 3 * count)
@@ -186,6 +192,8 @@ class CompiledModel:
                 polygons = self._levels[-1].refined if self._levels else self._control
                 if sum(map(len, polygons.loops)) > MAX_SURFACE_VERTICES:
                     raise ModelError(f"more than {MAX_SURFACE_VERTICES} vertices after {steps} subdivisions")
+                if sum(len(loop) ** 2 for loop in polygons.loops) > MAX_SURFACE_WEIGHTS:
+                    raise ModelError("the faces have too many corners to be subdivided")
                 self._levels.append(subdivide(polygons))
         return self._levels[steps - 1].refined if steps else self._control
 
@@ -209,8 +217,8 @@ class CompiledModel:
     def _default_triangles(self) -> Int[np.ndarray, "F 3"]:
         return self.surface_polygons(SUBDIVISION_STEPS).triangles()
 
-    def _batches(self, count: int, n_vertices: int) -> Iterator[slice]:
-        size = max(1, _CHUNK_BYTES // (24 * n_vertices))
+    def _batches(self, count: int, row_bytes: int) -> Iterator[slice]:
+        size = max(1, _CHUNK_BYTES // row_bytes)
         return (slice(start, start + size) for start in range(0, count, size))
 
     def _control_rows(self, values: Values) -> Positions:

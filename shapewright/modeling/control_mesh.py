@@ -37,7 +37,8 @@ class ControlMesh:
         self._component_of: list[int] = []
         self._vertices_of_component: list[list[int]] = []
         self._walked: set[tuple[int, int]] = set()  # every (from, to) of every face
-        self._work = 0
+        self.work = 0
+        """What :meth:`spend` has counted so far."""
         self._edge_ids: dict[tuple[int, int], int] = {}
         self._edge_faces: dict[int, list[int]] = {}
         self._vertex_edges: dict[int, list[int]] = {}
@@ -129,8 +130,8 @@ class ControlMesh:
         Raises:
             ModelError: it is more than ``MAX_WORK``; a small document of a stranger can select everything very often.
         """
-        self._work += work
-        if self._work > MAX_WORK:
+        self.work += work
+        if self.work > MAX_WORK:
             raise ModelError(f"the operations up to here are too much work: more than {MAX_WORK} moves of vertices")
 
     def add_component(self) -> int:

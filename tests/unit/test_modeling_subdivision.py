@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from shapewright.errors import ModelError
 from shapewright.modeling import Component, Recorder
 from shapewright.modeling.elements import Element, edge, face, vertex
 from shapewright.modeling.subdivision import Polygons, subdivide
@@ -81,10 +82,26 @@ def test_chunks_make_up_the_batch(steps: int, monkeypatch: pytest.MonkeyPatch) -
     compiled = recorder.build().compile()
     values = compiled.random_values(np.random.default_rng(0), 11)
     whole = compiled.surface_points(values, steps)
-    monkeypatch.setattr("shapewright.modeling.compiled._CHUNK_BYTES", 24 * whole.shape[1] * 3)
+    controls = compiled.control_points(values)
+    monkeypatch.setattr("shapewright.modeling.compiled._CHUNK_BYTES", 60_000)
     chunks = list(compiled.surface_chunks(values, steps))
-    assert [start for start, _ in chunks] == [0, 3, 6, 9]
+    assert 3 <= len(chunks) <= 6
+    assert [start for start, _ in chunks] == np.cumsum([0, *(len(points) for _, points in chunks)])[:-1].tolist()
+    np.testing.assert_allclose(compiled.control_points(values), controls, atol=1e-12)
     np.testing.assert_allclose(np.concatenate([points for _, points in chunks]), whole, atol=1e-12)
+
+
+def test_a_surface_of_too_many_weights_or_vertices_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("shapewright.modeling.compiled.MAX_SURFACE_WEIGHTS", 10_000)
+    monkeypatch.setattr("shapewright.modeling.compiled.MAX_SURFACE_VERTICES", 1000)
+    many_corners = Recorder("corners", "corners")
+    many_corners.base("prism", (1, 1, 1), sides=100)
+    with pytest.raises(ModelError, match="corners"):
+        many_corners.build().compile().surface_polygons(1)
+    compiled = cube().build().compile()
+    assert compiled.surface_polygons(3).n_vertices == 386
+    with pytest.raises(ModelError, match="more than 1000 vertices after 4"):
+        compiled.surface_polygons(4)
 
 
 def _component(recorder: Recorder) -> Component:
