@@ -93,7 +93,9 @@ class TargetFrames:
         if (square <= floor).any():
             u = np.where(square <= floor, _across(normal), u)
         u = u / np.sqrt(_dot(u, u))
-        return np.stack([u, cross(normal, u), normal], axis=2)
+        frames = np.empty((*u.shape[:2], 3, u.shape[2]))
+        frames[:, :, 0], frames[:, :, 1], frames[:, :, 2] = u, cross(normal, u), normal
+        return frames
 
 
 def frame_of_element(mesh: ControlMesh, element: Element) -> FrameSource | WorldFrame:
@@ -155,7 +157,9 @@ def cross(first: Vectors, second: Vectors) -> Vectors:
     """Return the cross products of rows of vectors."""
     ax, ay, az = first[:, 0], first[:, 1], first[:, 2]
     bx, by, bz = second[:, 0], second[:, 1], second[:, 2]
-    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
+    product = np.empty_like(first)
+    product[:, 0], product[:, 1], product[:, 2] = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+    return product
 
 
 def _starts(lengths: list[int]) -> Int[np.ndarray, " N"]:
