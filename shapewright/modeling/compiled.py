@@ -14,6 +14,7 @@ from jaxtyping import Float, Int
 from shapewright.errors import ModelError, ParameterError
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling.control_mesh import ControlMesh
+from shapewright.modeling.fields import shown
 from shapewright.modeling.frames import Positions
 from shapewright.modeling.operations import Operation
 from shapewright.modeling.operations.operation import Quantities, Step
@@ -113,11 +114,11 @@ class CompiledModel:
                 known = ", ".join(columns) or "none"
                 raise ParameterError(f"the model has no parameter {name!r}; it has: {known}", where=f"values.{name}")
             parameter = self.model.parameters[columns[name]]
-            if not math.isfinite(value):
+            if value != value or abs(value) == math.inf:  # math.isfinite overflows on very long whole numbers
                 raise ParameterError("the value is not finite", where=f"values.{name}")
             if not parameter.minimum <= value <= parameter.maximum:
                 raise ParameterError(
-                    f"{value:g} is outside of [{parameter.minimum:g}, {parameter.maximum:g}]",
+                    f"{shown(value)} is outside of [{parameter.minimum:g}, {parameter.maximum:g}]",
                     where=f"values.{name}",
                 )
             values[columns[name]] = value

@@ -42,6 +42,10 @@ class ProceduralModel:
     closed: bool = True
 
     def __post_init__(self) -> None:
+        _check_name(self.name, "name")
+        _check_name(self.class_name, "class")
+        if len(self.description) > MAX_DESCRIPTION:
+            raise ModelError(f"a text of at most {MAX_DESCRIPTION} characters is needed", where="description")
         if not self.operations or not isinstance(self.operations[0], Base):
             raise ModelError("the first operation must be a base", where="operations")
         if len(self.operations) > MAX_OPERATIONS:

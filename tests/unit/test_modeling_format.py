@@ -123,7 +123,7 @@ def test_values_by_name() -> None:
     compiled = ProceduralModel.from_document(stool()).compile()
     np.testing.assert_array_equal(compiled.values_from_mapping({}), [1.0])
     np.testing.assert_array_equal(compiled.values_from_mapping({"height": 1.5}), [1.5])
-    for wrong in ({"width": 1.0}, {"height": 9.0}, {"height": float("nan")}):
+    for wrong in ({"width": 1.0}, {"height": 9.0}, {"height": float("nan")}, {"height": 10**400}):
         with pytest.raises(ParameterError) as caught:
             compiled.values_from_mapping(wrong)
         assert caught.value.where == f"values.{next(iter(wrong))}"

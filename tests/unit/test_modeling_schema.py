@@ -152,3 +152,16 @@ def test_a_number_too_large_for_a_float_is_refused_with_its_place() -> None:
     with pytest.raises(ModelError, match="beyond") as caught:
         ProceduralModel.from_json(json.dumps(document))
     assert caught.value.where == "parameters[0].range[1]"
+
+
+def test_a_recorder_takes_no_name_that_a_document_could_not_hold() -> None:
+    for name, class_name, description, where in (
+        ("My glass", "glass", "", "name"),
+        ("glass", "../glass", "", "class"),
+        ("glass", "glass", "x" * 5001, "description"),
+    ):
+        recorder = Recorder(name, class_name, description=description)
+        recorder.box(1, 1, 1)
+        with pytest.raises(ModelError) as caught:
+            recorder.build()
+        assert caught.value.where == where
