@@ -1,6 +1,5 @@
 """Extrude faces along (rho, phi, z), one face of a sketched path or a single one."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -10,38 +9,21 @@ from jaxtyping import Int
 from shapewright.errors import ModelError
 from shapewright.modeling.control_mesh import ControlMesh, Loop
 from shapewright.modeling.elements import Element, Target
-from shapewright.modeling.fields import NUMBER, TARGETS, field
 from shapewright.modeling.frames import Positions, TargetFrames, frames_of_targets
-from shapewright.modeling.operations.displacement import displacement
-from shapewright.modeling.operations.operation import Mode, Operation, Quantities, Step, multiplies, turns_phi
+from shapewright.modeling.operations.displacement import Displacement, displacement
+from shapewright.modeling.operations.operation import Quantities, Step
 
 
 @dataclass(frozen=True)
-class Extrude(Operation):
+class Extrude(Displacement):
     """Faces grow out of the mesh: each keeps its id at the new place, quads join it to its old outline.
 
     New vertices get ids in the order of the face's loop, new faces in the order of its edges.
 
-    Attributes:
-        targets: one face each.
-        rho: distance across the normal.
-        phi_deg: direction of that, from u towards v.
-        z: distance along the normal.
+    Each target is one face.
     """
 
     kind: ClassVar[str] = "extrude"
-    quantities: ClassVar[tuple[str, ...]] = ("rho", "phi_deg", "z")
-    modes: ClassVar[Mapping[str, Mode]] = {
-        "length": multiplies("rho", "z"),
-        "angle": turns_phi,
-        "height": multiplies("z"),
-        "sideways": multiplies("rho"),
-    }
-
-    targets: tuple[Target, ...] = field(TARGETS)
-    z: float = field(NUMBER, 0.0)
-    rho: float = field(NUMBER, 0.0)
-    phi_deg: float = field(NUMBER, 0.0)
 
     def apply(self, mesh: ControlMesh) -> Step:
         """Add the sides and lift the faces."""

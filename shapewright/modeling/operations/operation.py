@@ -113,8 +113,3 @@ def multiplies(*names: str) -> Mode:
         return {**quantities, **{name: quantities[name] * x for name in names}}
 
     return mode
-
-
-def turns_phi(quantities: Quantities, x: Amounts) -> Quantities:
-    """Return the mode (rho, phi + 180 (x - 1), z) of Table 1."""
-    return {**quantities, "phi_deg": quantities["phi_deg"] + 180.0 * (x - 1.0)}
