@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.table import Table
 
-BAR_CELLS = 20
+BAR_CELLS = 14
 
 
 def parameter_table(parameters: Iterable[Mapping[str, Any]]) -> "Table":
@@ -17,7 +17,9 @@ def parameter_table(parameters: Iterable[Mapping[str, Any]]) -> "Table":
     """
     from rich.table import Table
 
-    table = Table("parameter", "measure", "x", "range of x", "position in the range")
+    table = Table("parameter", "measure", "x", "range of x", "in the range")
+    for column in table.columns[1:]:
+        column.no_wrap = True
     for parameter in parameters:
         value, low, high = parameter["value"], parameter["minimum"], parameter["maximum"]
         base = parameter["base_value"]
