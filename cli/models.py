@@ -12,16 +12,25 @@ from shapewright.errors import ShapewrightError
 if TYPE_CHECKING:
     from shapewright.modeling import ProceduralModel
 
-app = typer.Typer(rich_markup_mode="rich", help="List, show and validate procedural models.", context_settings={})
+app = typer.Typer(rich_markup_mode="rich")
 
 VARIATIONS_TRIED = 16
 
 
 @app.callback(invoke_without_command=True)
-def models(context: typer.Context) -> None:
-    """List, show and validate procedural models."""
+def models(context: typer.Context, as_json: AsJson = False) -> None:
+    """List, show and validate procedural models; without more words it lists them.
+
+    Examples:
+
+      [bold]shapewright models[/]                      those that ship
+      [bold]shapewright models show table --json[/]    ranges and units of one
+      [bold]shapewright models validate mine.json[/]   what is wrong, and where
+    """
     if context.invoked_subcommand is None:
-        typer.echo(context.get_help())
+        list_models(as_json)
+    elif as_json:
+        raise typer.BadParameter(f"write it after {context.invoked_subcommand}", param_hint="--json")
 
 
 @app.command("list")

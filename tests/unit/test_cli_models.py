@@ -23,6 +23,11 @@ def test_list_names_the_shipped_models(library_models: "dict[str, ProceduralMode
     assert all(name in table for name in library_models)
 
 
+def test_without_more_words_the_models_are_listed() -> None:
+    for arguments in ([], ["--json"]):
+        assert shapewright("models", *arguments).stdout == shapewright("models", "list", *arguments).stdout
+
+
 def test_show_tells_ranges_and_units(lamp: Path) -> None:
     document = shapewright("models", "show", lamp, "--json").document
     assert document["name"] == "lamp"
