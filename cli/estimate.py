@@ -8,7 +8,7 @@ import typer
 
 from cli.console import AsJson, print_json, shown_progress, stdout
 from cli.report import parameter_table
-from cli.sources import load_model, read_object
+from cli.sources import load_compiled, read_object
 from shapewright.errors import EstimationError, MeshFileError
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def estimate(
     from shapewright.estimation import estimate as run_estimation
     from shapewright.mesh_file import load_mesh
 
-    compiled = load_model(model).compile()
+    compiled = load_compiled(model)
     query = load_mesh(mesh)
     chosen = EstimationSettings.quick().to_dict() if quick else {}
     if settings_file is not None:

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from cli.console import AsJson, print_json
-from cli.sources import load_model, read_assignments
+from cli.sources import load_compiled, read_assignments
 from shapewright.errors import MeshFileError, ParameterError
 
 MESH_TYPES = ("glb", "obj", "off", "ply", "stl")
@@ -45,7 +45,7 @@ def instance(
         raise ParameterError("several meshes of the same values make no sense; add --random", where="--count")
     import numpy as np
 
-    compiled = load_model(model).compile()
+    compiled = load_compiled(model)
     names = [parameter.name for parameter in compiled.model.parameters]
     fixed = read_assignments(assignments, values)
     chosen = compiled.values_from_mapping(fixed)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cli.console import AsJson, print_json, stdout
-from cli.sources import load_model
+from cli.sources import load_compiled, load_model
 from models_store.library.shipped import list_shipped, load_shipped
 from shapewright.errors import ShapewrightError
 
@@ -115,8 +115,7 @@ def _validate(file: str) -> dict[str, Any]:
     import numpy as np
 
     try:
-        model = load_model(file)
-        compiled = model.compile()
+        compiled = load_compiled(file)
         values = compiled.random_values(np.random.default_rng(0), VARIATIONS_TRIED)
         points = compiled.surface_points(np.vstack([compiled.base_values()[None], values]))
     except ShapewrightError as error:
@@ -124,7 +123,7 @@ def _validate(file: str) -> dict[str, Any]:
     if not np.isfinite(points).all():
         error_text = "some parameter values give coordinates that are not finite"
         return {"file": file, "valid": False, "error": error_text, "where": None}
-    return {"file": file, "valid": True, "parameters": len(model.parameters), "digest": model.digest}
+    return {"file": file, "valid": True, "parameters": len(compiled.model.parameters), "digest": compiled.model.digest}
 
 
 def _summary(model: "ProceduralModel") -> dict[str, Any]:

@@ -1,13 +1,29 @@
-"""The picture that shows a fit to a person."""
+"""Pictures that people look at, as PNG files."""
 
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from shapewright.whole_file import write_whole
+
 if TYPE_CHECKING:
     import numpy as np
-    from jaxtyping import Float
+    from jaxtyping import Float, UInt8
 
     from shapewright.mesh import TriangleMesh
+
+
+def save_picture(pixels: "UInt8[np.ndarray, 'H W 3']", path: Path) -> None:
+    """Write a PNG, completely or not at all.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    from PIL import Image
+
+    png = io.BytesIO()
+    Image.fromarray(pixels).save(png, format="PNG")
+    write_whole(path, png.getvalue())
 
 
 def save_side_by_side(
@@ -28,10 +44,8 @@ def save_side_by_side(
             of the model upwards) however the query lies in its file.
         size: pixels of each of the three pictures.
     """
-    from PIL import Image
-
     from shapewright.rendering import compose_side_by_side, three_quarter_view
 
     view = three_quarter_view("z")
     rotation = view if model_to_query is None else view @ model_to_query.T
-    Image.fromarray(compose_side_by_side(query, fitted, rotation=rotation, size=size)).save(path)
+    save_picture(compose_side_by_side(query, fitted, rotation=rotation, size=size), path)

@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from cli.console import AsJson, print_json
-from cli.sources import load_model, read_assignments
+from cli.picture import save_picture
+from cli.sources import load_compiled, read_assignments
 from models_store.library.shipped import list_shipped
 from shapewright.errors import RenderingError
 
@@ -54,20 +55,18 @@ def render(
     """
     if output.suffix.lower() != ".png":
         raise RenderingError("pictures are written as .png", where=str(output))
-    from PIL import Image
-
     from shapewright.mesh_file import load_mesh
     from shapewright.rendering import render_mesh, three_quarter_view
 
     if source in list_shipped() or source.endswith(".json"):
-        compiled = load_model(source).compile()
+        compiled = load_compiled(source)
         mesh = compiled.instance(compiled.values_from_mapping(read_assignments(assignments, None)))
     else:
         mesh = load_mesh(source)
     view = three_quarter_view(up.value, azimuth_rad=math.radians(turn), elevation_rad=math.radians(tilt))
     pixels = render_mesh(mesh, rotation=view, size=size, style=style.value)
     output.parent.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(pixels).save(output)
+    save_picture(pixels, output)
     if as_json:
         print_json({"file": str(output), "width": size, "height": size, "style": style.value})
     else:

@@ -8,7 +8,7 @@ from models_store.library.shipped import list_shipped, load_shipped
 from shapewright.errors import ModelError, ParameterError
 
 if TYPE_CHECKING:
-    from shapewright.modeling import ProceduralModel
+    from shapewright.modeling import CompiledModel, ProceduralModel
 
 
 def load_model(source: str) -> "ProceduralModel":
@@ -28,9 +28,23 @@ def load_model(source: str) -> "ProceduralModel":
     raise ModelError(f"neither a file nor a shipped model (these ship: {names})", where=repr(source))
 
 
-def load_models(sources: list[str] | None) -> "list[ProceduralModel]":
+def load_compiled(source: str) -> "CompiledModel":
+    """Load a procedural model and build its topology.
+
+    Raises:
+        ModelError: as :func:`load_model`, or an operation that cannot be done.
+    """
+    model = load_model(source)
+    try:
+        return model.compile()
+    except ModelError as error:
+        place = f"{source}: {error.where}" if error.where else source
+        raise ModelError(error.message, where=place) from None
+
+
+def load_all_compiled(sources: list[str] | None) -> "list[CompiledModel]":
     """Load the named models, or every shipped one when none is named."""
-    return [load_model(source) for source in (sources or list_shipped())]
+    return [load_compiled(source) for source in (sources or list_shipped())]
 
 
 def read_object(file: Path) -> dict[str, Any]:

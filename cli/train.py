@@ -7,8 +7,9 @@ from typing import Annotated, Any
 import typer
 
 from cli.console import AsJson, print_json, shown_progress
-from cli.sources import load_models, read_object
+from cli.sources import load_all_compiled, read_object
 from shapewright.errors import ClassifierError
+from shapewright.whole_file import write_whole
 
 
 def train(
@@ -45,8 +46,8 @@ def train(
     from shapewright.classification import TrainingSettings, train_classifier
 
     by_class: dict[str, list[Any]] = {}
-    for model in load_models(models):
-        by_class.setdefault(model.class_name, []).append(model.compile())
+    for compiled in load_all_compiled(models):
+        by_class.setdefault(compiled.model.class_name, []).append(compiled)
     options = {"variations": variations, "images_per_variation": images, "epochs": epochs, "seed": seed}
     chosen = read_object(settings_file) if settings_file is not None else {}
     chosen |= {name: value for name, value in options.items() if value is not None}
@@ -59,7 +60,7 @@ def train(
         trained = train_classifier(by_class, settings, progress=progress)
     seconds = time.monotonic() - started_s
     output.parent.mkdir(parents=True, exist_ok=True)
-    output.write_bytes(trained.onnx)
+    write_whole(output, trained.onnx)
     if as_json:
         print_json(
             {

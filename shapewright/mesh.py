@@ -14,6 +14,7 @@ from jaxtyping import Float, Int
 
 from shapewright.errors import MeshError
 from shapewright.glb import GlbWriter
+from shapewright.whole_file import write_whole
 
 WRITABLE_TYPES = ("glb", "obj", "off", "ply", "stl")
 """The file types a mesh can be written as."""
@@ -207,7 +208,7 @@ class TriangleMesh:
             OSError: the file cannot be written.
         """
         data = self.to_bytes(Path(path).suffix.lower().lstrip("."))
-        Path(path).write_bytes(data)
+        write_whole(path, data)
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,16 +34,19 @@ def load_mesh(path: str | Path, *, limits: ReadLimits = DEFAULT_LIMITS) -> Trian
             says, is damaged, or holds no usable surface.
     """
     where = ascii(str(path))
-    file_type = normalized_type(Path(path).suffix)
     try:
+        file_type = normalized_type(Path(path).suffix)
         with Path(path).open("rb") as file:
             data = file.read(limits.size_bytes + 1)
+        _check_size(data, limits)
+        check_content(data, file_type)
+        return decode_mesh(data, file_type, limits)
+    except MeshError as error:
+        place = f"{where}: {error.where}" if error.where else where
+        raise MeshFileError(error.message, where=place) from None
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise MeshFileError(f"cannot be read: {reason}", where=where) from None
-    _check_size(data, limits)
-    check_content(data, file_type)
-    return decode_mesh(data, file_type, limits)
 
 
 def parse_mesh(data: bytes, file_type: str, *, limits: ReadLimits = DEFAULT_LIMITS) -> TriangleMesh:

@@ -14,6 +14,7 @@ from shapewright.modeling.fields import read_object, shown
 from shapewright.modeling.operations import OPERATIONS, Base, Operation
 from shapewright.modeling.parameter import NAME_PATTERN, Parameter
 from shapewright.modeling.upgrade import FORMAT, VERSION, upgrade_document
+from shapewright.whole_file import write_whole
 
 MAX_OPERATIONS = 5_000
 MAX_PARAMETERS = 200
@@ -96,7 +97,7 @@ class ProceduralModel:
             document = json.loads(text, parse_constant=_refuse_constant)
             json.dumps(document, ensure_ascii=False).encode()  # JSON can escape half characters, UTF-8 cannot
         except json.JSONDecodeError as error:
-            raise ModelError(error.msg, where=f"line {error.lineno} column {error.colno}") from None
+            raise ModelError(f"broken JSON: {error.msg}", where=f"line {error.lineno} column {error.colno}") from None
         except (UnicodeError, RecursionError, ValueError) as error:
             raise ModelError(f"not a JSON text: {error}") from None
         return cls.from_document(document)
@@ -143,9 +144,14 @@ class ProceduralModel:
             ModelError: the file cannot be read or does not fit the format.
         """
         try:
-            return cls.from_json(Path(path).read_bytes())
+            text = Path(path).read_bytes()
         except OSError as error:
             raise ModelError(f"cannot be read: {error.strerror}", where=str(path)) from None
+        try:
+            return cls.from_json(text)
+        except ModelError as error:
+            place = f"{path}: {error.where}" if error.where else str(path)
+            raise ModelError(error.message, where=place) from None
 
     def to_document(self) -> dict[str, Any]:
         """Return the JSON object of the model."""
@@ -173,8 +179,12 @@ class ProceduralModel:
         return "{\n" + ",\n".join(lines) + "\n}\n"
 
     def save(self, path: Path | str) -> None:
-        """Write the canonical text to a file."""
-        Path(path).write_text(self.to_json(), encoding="utf-8")
+        """Write the canonical text to a file.
+
+        Raises:
+            OSError: the file cannot be written.
+        """
+        write_whole(path, self.to_json().encode())
 
     @property
     def digest(self) -> str:
