@@ -1,5 +1,7 @@
 """Laws that hold for every procedural model, checked on random ones."""
 
+from dataclasses import replace
+
 import numpy as np
 import trimesh
 from hypothesis import HealthCheck, given, settings
@@ -31,6 +33,16 @@ def test_a_document_replays_to_the_same_model_ids_and_mesh(recipe: Recipe) -> No
     assert topology(again) == topology(model)
     ones = np.ones((1, len(model.parameters)))
     np.testing.assert_array_equal(model.compile().control_points(ones), again.compile().control_points(ones))
+
+
+@few
+@given(recipes())
+def test_ones_give_the_base_model(recipe: Recipe) -> None:
+    model = recipe.build()
+    bare = replace(model, parameters=()).compile()
+    compiled = model.compile()
+    base, ones = bare.surface_points(np.ones((1, 0))), compiled.surface_points(compiled.base_values()[None])
+    np.testing.assert_allclose(ones, base, atol=1e-12)
 
 
 @few
