@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 import urllib.request
 from pathlib import Path
 
@@ -84,7 +83,6 @@ def test_it_keeps_serving_and_uses_a_kept_folder_again(tmp_path: Path) -> None:
 
 
 def test_a_mesh_that_cannot_be_read_ends_it_with_a_reason(tmp_path: Path) -> None:
-    started_s = time.monotonic()
     done = subprocess.run(
         [sys.executable, "-m", "cli", "demo", "missing.off", "--once", "--output", tmp_path / "out"],
         capture_output=True,
@@ -94,4 +92,4 @@ def test_a_mesh_that_cannot_be_read_ends_it_with_a_reason(tmp_path: Path) -> Non
     )
     assert done.returncode == 1
     assert "missing.off" in done.stderr
-    assert time.monotonic() - started_s < 60, "it is noticed before anything is trained"
+    assert done.stdout == "", "it is noticed before anything is started"
