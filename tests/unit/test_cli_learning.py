@@ -70,6 +70,7 @@ def test_a_query_is_rebuilt_where_it_lies(folder: Path, tmp_path: Path) -> None:
     length = next(p for p in document["parameters"] if p["name"] == "post_length")
     assert length["value"] == pytest.approx(1.4, rel=0.15)
     assert document["distances"]["surface"] < 0.1
+    assert document["distances"]["zbuffer"] < 0.1
     assert np.abs(load_mesh(fitted).bounds - placed.bounds).max() < 0.15 * np.ptp(placed.bounds, axis=0).max()
     with Image.open(picture) as image:
         assert image.width == 3 * image.height
