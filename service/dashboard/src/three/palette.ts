@@ -13,7 +13,7 @@ export interface Palette {
 
 export const PALETTES: Record<ColorScheme, Palette> = {
   light: {
-    tones: { model: "#c6cfd4", query: "#da7a62", fit: "#3b7fd0" },
+    tones: { model: "#c6cfd4", query: "#3b7fd0", fit: "#e0862f" },
     edge: "#0d1b22",
     gridCell: "#dde2e5",
     gridSection: "#c3ccd1",
@@ -21,7 +21,7 @@ export const PALETTES: Record<ColorScheme, Palette> = {
     ground: "#cdd3d6",
   },
   dark: {
-    tones: { model: "#b9c4ca", query: "#e18c75", fit: "#4f93e3" },
+    tones: { model: "#b9c4ca", query: "#4f93e3", fit: "#ee9a48" },
     edge: "#05090b",
     gridCell: "#20282d",
     gridSection: "#2f3a40",
