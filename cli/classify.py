@@ -37,7 +37,7 @@ def classify(
         for number, file in enumerate(meshes):
             PartialProgress(progress, number / len(meshes), 1.0).report(0.0, file.name)
             started_s = time.monotonic()
-            found = network.classify(load_mesh(file), views=views, rng=np.random.default_rng(seed))
+            found = network.classify(load_mesh(file, in_child=True), views=views, rng=np.random.default_rng(seed))
             ranked = sorted(found.probabilities.items(), key=lambda item: -item[1])
             results.append(
                 {

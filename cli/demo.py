@@ -108,9 +108,9 @@ def _quick_settings(samples: int, seed: int) -> dict[str, Any]:
 
 def _refuse_early(query: Path) -> None:
     """A mesh that the service will refuse is told about before a classifier is trained."""
-    from shapewright.mesh_file import parse_mesh
+    from shapewright.mesh_file import load_mesh
 
-    parse_mesh(query.read_bytes(), query.suffix)
+    load_mesh(query, in_child=True)
 
 
 @contextlib.contextmanager

@@ -57,7 +57,7 @@ def estimate(
     from shapewright.mesh_file import load_mesh
 
     compiled = load_compiled(model)
-    query = load_mesh(mesh)
+    query = load_mesh(mesh, in_child=True)
     chosen = EstimationSettings.quick().to_dict() if quick else {}
     if settings_file is not None:
         chosen |= read_object(settings_file)

@@ -62,7 +62,7 @@ def render(
         compiled = load_compiled(source)
         mesh = compiled.instance(compiled.values_from_mapping(read_assignments(assignments, None)))
     else:
-        mesh = load_mesh(source)
+        mesh = load_mesh(source, in_child=True)
     view = three_quarter_view(up.value, azimuth_rad=math.radians(turn), elevation_rad=math.radians(tilt))
     pixels = render_mesh(mesh, rotation=view, size=size, style=style.value)
     output.parent.mkdir(parents=True, exist_ok=True)

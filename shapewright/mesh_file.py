@@ -26,8 +26,13 @@ __all__ = ["DEFAULT_LIMITS", "ReadLimits", "load_mesh", "parse_mesh"]
 DEFAULT_LIMITS = ReadLimits()
 
 
-def load_mesh(path: str | Path, *, limits: ReadLimits = DEFAULT_LIMITS) -> TriangleMesh:
-    """Read a file you trust, in this process; the type is the ending of its name.
+def load_mesh(path: str | Path, *, limits: ReadLimits = DEFAULT_LIMITS, in_child: bool = False) -> TriangleMesh:
+    """Read a file; its type is the ending of its name.
+
+    Args:
+        path: the file.
+        limits: what the file may cost; memory and time are only limited in a child.
+        in_child: for a file that you do not trust: parse it in a child process, as :func:`parse_mesh` does.
 
     Raises:
         MeshFileError: the file cannot be opened, is over a limit of size or counts, is not what its name
@@ -40,7 +45,7 @@ def load_mesh(path: str | Path, *, limits: ReadLimits = DEFAULT_LIMITS) -> Trian
             data = file.read(limits.size_bytes + 1)
         _check_size(data, limits)
         check_content(data, file_type)
-        return decode_mesh(data, file_type, limits)
+        return parse_mesh(data, file_type, limits=limits) if in_child else decode_mesh(data, file_type, limits)
     except MeshError as error:
         place = f"{where}: {error.where}" if error.where else where
         raise MeshFileError(error.message, where=place) from None

@@ -263,6 +263,15 @@ def test_trusted_files(tmp_path):
         load_mesh(path, limits=replace(DEFAULT_LIMITS, size_bytes=10))
 
 
+def test_a_file_that_is_not_trusted_is_read_in_a_child(tmp_path):
+    path = tmp_path / "ball.off"
+    path.write_bytes(WRITTEN["off"])
+    np.testing.assert_array_equal(load_mesh(path, in_child=True).vertices, BALL.vertices)
+    with pytest.raises(MeshFileError, match=r"more than 0\.01 s") as caught:
+        load_mesh(path, in_child=True, limits=replace(DEFAULT_LIMITS, wall_s=0.01))
+    assert "ball.off" in str(caught.value.where)
+
+
 @pytest.mark.parametrize("name", ["missing.obj", "folder.obj", "nul\0.obj", "ball", "ball.txt"])
 def test_paths_that_cannot_be_read(tmp_path, name):
     (tmp_path / "folder.obj").mkdir()
