@@ -67,34 +67,24 @@ def align_in_24_ways(
     return best
 
 
-def climb_surface(
+def climb_realigned(
     comparison: Comparison,
+    distance: PosedDistance,
+    name: str,
     start: Candidate,
     original_scale: float,
     progress: Progress,
     steady: SteadyProgress,
     improved: Improved,
 ) -> Candidate:
-    """Rest of layer 2: hill climbing with the surface distance, realigned after every change."""
-    evaluate = _realigned(comparison, comparison.surface, original_scale, steady)
+    """Hill climbing with a distance that knows the pose, realigned after every change.
+
+    With the surface distance it is the rest of layer 2, with the z-buffer distance one of the two climbs of layer 3.
+    """
+    evaluate = _realigned(comparison, distance, original_scale, steady)
     begin = evaluate(start.values, start)
     improved(begin)
-    return _climb(comparison, evaluate, begin, progress, improved, "surface distance")
-
-
-def climb_zbuffer(
-    comparison: Comparison,
-    start: Candidate,
-    original_scale: float,
-    progress: Progress,
-    steady: SteadyProgress,
-    improved: Improved,
-) -> Candidate:
-    """One of the two climbs of layer 3: with the z-buffer distance, realigned after every change."""
-    evaluate = _realigned(comparison, comparison.zbuffer, original_scale, steady)
-    begin = evaluate(start.values, start)
-    improved(begin)
-    return _climb(comparison, evaluate, begin, progress, improved, "z-buffer distance")
+    return _climb(comparison, evaluate, begin, progress, improved, name)
 
 
 def _realigned(

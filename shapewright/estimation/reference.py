@@ -103,32 +103,24 @@ class ReferenceEstimator:
         )
         self._finished.add("panorama")
 
-        second = layers.climb_surface(
-            comparison, aligned, original_scale, phase["layer 2"], self._steady, self._keep("surface")
-        )
-        self._finished.add("surface")
+        def climb(
+            distance: layers.PosedDistance, name: str, start: Candidate, stage: StageName, part: str
+        ) -> Candidate:
+            keep = self._keep(stage)
+            best = layers.climb_realigned(
+                comparison, distance, name, start, original_scale, phase[part], self._steady, keep
+            )
+            self._finished.add(stage)
+            return best
 
-        third = layers.climb_zbuffer(
-            comparison,
-            second,
-            original_scale,
-            phase["layer 3 after layer 2"],
-            self._steady,
-            self._keep("surface+zbuffer"),
-        )
-        self._finished.add("surface+zbuffer")
+        surface, zbuffer = "surface distance", "z-buffer distance"
+        second = climb(comparison.surface, surface, aligned, "surface", "layer 2")
+        third = climb(comparison.zbuffer, zbuffer, second, "surface+zbuffer", "layer 3 after layer 2")
         if second.pose is aligned.pose and np.array_equal(second.values, aligned.values):
             self._found["zbuffer"] = third
+            self._finished.add("zbuffer")
         else:
-            layers.climb_zbuffer(
-                comparison,
-                aligned,
-                original_scale,
-                phase["layer 3 after layer 1"],
-                self._steady,
-                self._keep("zbuffer"),
-            )
-        self._finished.add("zbuffer")
+            climb(comparison.zbuffer, zbuffer, aligned, "zbuffer", "layer 3 after layer 1")
         self._steady.report(1.0, "estimated")
 
     def _build_bank(self, comparison: Comparison, rng: np.random.Generator, progress: Progress) -> PanoramaBank:
