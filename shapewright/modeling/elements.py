@@ -109,8 +109,11 @@ class Target:
             model, an element is that element's frame.
         image: empty, or the transforms that map the operation's *first* target onto this one. Then this target
             uses the image of the first target's frame, so that a model stays symmetric whatever its parameters.
+        pivot: the elements about whose centre the target is scaled or turned, the hinge of a limb; none: about its
+            own centre, or the operation's pivot. Other operations refuse it.
     """
 
     elements: tuple[Element, ...]
     frame: Literal["own", "world"] | Element = "own"
     image: Image = ()
+    pivot: tuple[Element, ...] = ()

@@ -165,7 +165,7 @@ def _write_image(image: Image) -> list[dict[str, Any]]:
 
 
 def _read_target(value: Any, where: str) -> Target:
-    item = read_object(value, where, {"elements", "frame", "image"})
+    item = read_object(value, where, {"elements", "frame", "image", "pivot"})
     if "elements" not in item:
         raise ModelError("a target needs the field 'elements'", where=where)
     frame = item.get("frame", "own")
@@ -173,6 +173,7 @@ def _read_target(value: Any, where: str) -> Target:
         elements=_read_elements(item["elements"], f"{where}.elements"),
         frame=frame if frame in ("own", "world") else _read_element(frame, f"{where}.frame"),
         image=_read_image(item.get("image", []), f"{where}.image"),
+        pivot=_read_elements(item.get("pivot", []), f"{where}.pivot"),
     )
 
 
@@ -182,6 +183,8 @@ def _write_target(target: Target) -> dict[str, Any]:
         document["frame"] = str(target.frame)
     if target.image:
         document["image"] = _write_image(target.image)
+    if target.pivot:
+        document["pivot"] = [str(element) for element in target.pivot]
     return document
 
 
@@ -225,6 +228,7 @@ _TARGET_SCHEMA: dict[str, Any] = {
         "elements": _list_schema(_ELEMENT_SCHEMA),
         "frame": {"anyOf": [{"enum": ["own", "world"]}, _ELEMENT_SCHEMA]},
         "image": _IMAGE_SCHEMA,
+        "pivot": _list_schema(_ELEMENT_SCHEMA),
     },
     "required": ["elements"],
     "additionalProperties": False,

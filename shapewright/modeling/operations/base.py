@@ -12,6 +12,7 @@ from shapewright.modeling.elements import Target, image_matrix
 from shapewright.modeling.fields import TARGETS, VECTOR, choice, field, integer
 from shapewright.modeling.frames import Centres, Positions, TargetFrames, frames_of_targets
 from shapewright.modeling.operations.operation import Operation, Quantities, Step
+from shapewright.modeling.operations.selection import refuse_pivots
 
 MAX_SIDES = 256
 
@@ -47,6 +48,7 @@ class Base(Operation):
             raise ModelError("every extent of a base must be above 0")
         if self.shape == "ring" and self.size[2] * 2 >= min(self.size[:2]):
             raise ModelError("the tube of a ring must be thinner than half its diameter")
+        refuse_pivots(self.kind, self.anchors)
 
     def apply(self, mesh: ControlMesh) -> Step:
         """Add one component for each anchor."""

@@ -10,6 +10,7 @@ from shapewright.modeling.elements import Target
 from shapewright.modeling.fields import NUMBER, TARGETS, field
 from shapewright.modeling.frames import Frames, Vectors
 from shapewright.modeling.operations.operation import Amounts, Mode, Operation, Quantities, multiplies
+from shapewright.modeling.operations.selection import refuse_pivots
 
 
 def _turns_phi(quantities: Quantities, x: Amounts) -> Quantities:
@@ -40,6 +41,9 @@ class Displacement(Operation):
     z: float = field(NUMBER, 0.0)
     rho: float = field(NUMBER, 0.0)
     phi_deg: float = field(NUMBER, 0.0)
+
+    def __post_init__(self) -> None:
+        refuse_pivots(self.kind, self.targets)
 
 
 def displacement(frames: Frames, quantities: Quantities) -> Vectors:

@@ -26,7 +26,7 @@ class Run:
 
 @dataclass(frozen=True, eq=False)
 class MovedTargets:
-    """The frames of all targets, the vertices whose means are their pivots (one for all, or one each), and the rows.
+    """The frames of all targets, the vertices whose means are their pivots, and the rows.
 
     Targets that share vertices are in different runs, which move one after the other.
     """
@@ -42,7 +42,8 @@ def moved_targets(mesh: ControlMesh, targets: tuple[Target, ...], pivot: Element
     Args:
         mesh: the topology at the time of the operation.
         targets: what moves.
-        pivot: the element about whose centre every target is scaled or turned; ``None`` means about its own.
+        pivot: the element about whose centre every target is scaled or turned that names no pivot of its own;
+            ``None`` means about the target's own centre.
 
     Raises:
         ModelError: no target, an empty one, an element that does not exist, or too much work.
@@ -50,15 +51,22 @@ def moved_targets(mesh: ControlMesh, targets: tuple[Target, ...], pivot: Element
     if not targets or not all(target.elements for target in targets):
         raise ModelError("nothing is selected")
     frames = frames_of_targets(mesh, targets)
-    fixed = mesh.vertices_of([pivot]) if pivot else None
-    moved = []
+    moved, pivots = [], []
     for target in targets:
         vertices = mesh.vertices_of(target.elements)
         if not vertices:
             raise ModelError("a selected component has no vertices left")
-        mesh.spend(len(vertices))
+        hinge = mesh.vertices_of(target.pivot or ((pivot,) if pivot else ())) or vertices
+        mesh.spend(len(vertices) + len(hinge))
         moved.append(vertices)
-    return MovedTargets(frames, Centres([fixed] if fixed else moved), _runs(moved))
+        pivots.append(hinge)
+    return MovedTargets(frames, Centres(pivots), _runs(moved))
+
+
+def refuse_pivots(kind: str, targets: tuple[Target, ...]) -> None:
+    """Raise ModelError if a target has a pivot, which only scale and rotate know."""
+    if any(target.pivot for target in targets):
+        raise ModelError(f"{kind} turns about no pivot")
 
 
 def _runs(moved: list[list[int]]) -> tuple[Run, ...]:
@@ -80,7 +88,7 @@ def map_about_pivots(positions: Positions, targets: MovedTargets, local_map: Flo
     """
     frames = targets.frames.evaluate(positions)
     maps = np.einsum("tijb,tkjb->tikb", np.einsum("tijb,jkb->tikb", frames, local_map), frames)
-    pivots = np.broadcast_to(targets.pivots.evaluate(positions), (len(maps), *positions.shape[1:]))
+    pivots = targets.pivots.evaluate(positions)
     for run in targets.runs:
         if len(maps) == 1:  # the common case needs no copy of the map for each vertex
             positions[run.vertices] = pivots + np.einsum("ijb,njb->nib", maps[0], positions[run.vertices] - pivots)
