@@ -1,20 +1,28 @@
 """Procedural models: a base mesh, an ordered list of modelling operations, and named parameters."""
 
 from shapewright.modeling.compiled import CompiledModel
-from shapewright.modeling.elements import Element, Mirror, Target, Turn
+from shapewright.modeling.component import Component
+from shapewright.modeling.dependence import Condition, Limit, when
+from shapewright.modeling.elements import Element, Mirror, Target, Turn, group, imaged, mirrored, turned
 from shapewright.modeling.parameter import Parameter, ParameterTarget
+from shapewright.modeling.part import Part
 from shapewright.modeling.procedural_model import ProceduralModel, json_schema
-from shapewright.modeling.recorder import Component, Recorder, group, imaged, mirrored, turned
+from shapewright.modeling.recorder import Recorder
+from shapewright.modeling.symmetry import Symmetry
 
 __all__ = [
     "CompiledModel",
     "Component",
+    "Condition",
     "Element",
+    "Limit",
     "Mirror",
     "Parameter",
     "ParameterTarget",
+    "Part",
     "ProceduralModel",
     "Recorder",
+    "Symmetry",
     "Target",
     "Turn",
     "group",
@@ -22,4 +30,5 @@ __all__ = [
     "json_schema",
     "mirrored",
     "turned",
+    "when",
 ]

@@ -1,6 +1,5 @@
 """A compiled model: the topology once, then positions for batches of parameters (DESIGN.md, section 2)."""
 
-import math
 import threading
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
@@ -9,15 +8,16 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from shapewright.errors import ModelError, ParameterError
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling.control_mesh import ControlMesh
-from shapewright.modeling.fields import shown
 from shapewright.modeling.frames import Positions
 from shapewright.modeling.operations import Operation
 from shapewright.modeling.operations.operation import Quantities, Step
+from shapewright.modeling.parameter_space import ParameterSpace, Values
+from shapewright.modeling.part import ALWAYS, PartVertices
 from shapewright.modeling.subdivision import Polygons, SubdivisionStep, subdivide
 
 if TYPE_CHECKING:
@@ -30,8 +30,6 @@ MAX_SURFACE_VERTICES = 1_000_000
 MAX_SURFACE_WEIGHTS = 10_000_000
 """Bound on the entries of a subdivision matrix; a face of n corners makes about n x n of them."""
 _CHUNK_BYTES = 64 * 2**20
-
-Values = Float[np.ndarray, "B P"]
 
 
 @dataclass(frozen=True)
@@ -56,11 +54,13 @@ class CompiledModel:
     """Evaluates a procedural model. Make it with :meth:`ProceduralModel.compile`.
 
     Parameter values x are arrays (B, P), in the order of ``model.parameters``; a row is one instance, and the row
-    of ones is the base model. All instances share one topology.
+    of ones is the base model. All instances of a batch share one topology; a part that a row lacks is drawn together to
+    a point inside the object. :meth:`instance` leaves it out.
     """
 
     def __init__(self, model: "ProceduralModel") -> None:
         self.model = model
+        self.space = ParameterSpace(model.parameters)
         mesh = ControlMesh()
         steps = []
         bindings: dict[int, list[tuple[int, str]]] = defaultdict(list)
@@ -75,14 +75,21 @@ class CompiledModel:
             except ModelError as error:
                 raise ModelError(error.message, where=f"operations[{index}]") from None
             most_work = max(most_work, mesh.work - work_before)
+        for number, part in enumerate(model.parts):
+            self.space.check_conditions(part.present_when, f"parts[{number}].present_when")
+        self._parts = PartVertices(mesh, model.parts)
+        for component in model.symmetry.apart:
+            mesh.check_component(component.id)
         self._steps = tuple(steps)
         self._n_created = mesh.n_vertices
         self._row_bytes = 24 * max(mesh.n_vertices, most_work)  # of one instance, while a step is at work
         self._live = np.array(mesh.live_vertices(), dtype=np.int64)
         self._control = _compact(mesh, self._live)
         self.is_closed = mesh.is_closed()
-        self.minimum: Float[np.ndarray, " P"] = np.array([p.minimum for p in model.parameters], dtype=np.float64)
-        self.maximum: Float[np.ndarray, " P"] = np.array([p.maximum for p in model.parameters], dtype=np.float64)
+        self.control_components: Int[np.ndarray, " V"] = np.array([mesh.component_of(int(v)) for v in self._live])
+        """The component of each row of :meth:`control_points`."""
+        self.minimum = self.space.minimum
+        self.maximum = self.space.maximum
         self._levels: list[SubdivisionStep] = []
         self._growing = threading.Lock()  # several threads may ask for the same new level
 
@@ -95,34 +102,35 @@ class CompiledModel:
 
     def base_values(self) -> Float[np.ndarray, " P"]:
         """Return the values of the base model: ones."""
-        return np.ones(self.n_parameters)
+        return self.space.base_values()
 
-    def random_values(self, rng: np.random.Generator, count: int) -> Float[np.ndarray, "B P"]:
-        """Return ``count`` rows, every parameter uniform in its range (paper section 3.2)."""
-        return rng.uniform(self.minimum, self.maximum, size=(count, self.n_parameters))
+    def random_values(self, rng: np.random.Generator, count: int) -> Values:
+        """Return ``count`` settled rows, every active parameter uniform in its range (paper section 3.2)."""
+        return self.space.random_values(rng, count)
 
-    def values_from_mapping(self, named: Mapping[str, float]) -> Float[np.ndarray, " P"]:
-        """Return one row from names; what is not named stays 1.
+    def settle(self, values: Values) -> Values:
+        """Return the rows as they are meant: in their ranges, options whole, 1 where not active.
 
         Raises:
-            ParameterError: an unknown name, a value that is not finite or out of its range.
+            ParameterError: the array has not P columns or holds NaN.
         """
-        columns = {parameter.name: i for i, parameter in enumerate(self.model.parameters)}
-        values = self.base_values()
-        for name, value in named.items():
-            if name not in columns:
-                known = ", ".join(columns) or "none"
-                raise ParameterError(f"the model has no parameter {name!r}; it has: {known}", where=f"values.{name}")
-            parameter = self.model.parameters[columns[name]]
-            if value != value or abs(value) == math.inf:  # math.isfinite overflows on very long whole numbers
-                raise ParameterError("the value is not finite", where=f"values.{name}")
-            if not parameter.minimum <= value <= parameter.maximum:
-                raise ParameterError(
-                    f"{shown(value)} is outside of [{parameter.minimum:g}, {parameter.maximum:g}]",
-                    where=f"values.{name}",
-                )
-            values[columns[name]] = value
-        return values
+        return self._settled(values)
+
+    def values_from_mapping(self, named: Mapping[str, float]) -> Float[np.ndarray, " P"]:
+        """Return one settled row from names; see :meth:`ParameterSpace.values_from_mapping`.
+
+        Raises:
+            ParameterError: an unknown name, a value that is not finite, out of its range or no option.
+        """
+        return self.space.values_from_mapping(named)
+
+    def parts_present(self, values: Values) -> Bool[np.ndarray, "B N"]:
+        """Tell which of ``model.parts`` each row's instance has.
+
+        Raises:
+            ParameterError: the array has not P columns or holds NaN.
+        """
+        return self._present(self._settled(values))
 
     # ------------------------------------------------------------------ geometry
 
@@ -142,7 +150,7 @@ class CompiledModel:
         Raises:
             ParameterError: the array has not P columns or holds NaN.
         """
-        values = self._checked(values)
+        values = self._settled(values)
         points = np.empty((len(values), len(self._live), 3))
         for rows in self._batches(len(values), self._row_bytes):
             points[rows] = self._control_rows(values[rows]).transpose(2, 0, 1)
@@ -159,7 +167,7 @@ class CompiledModel:
             ParameterError: the array has not P columns or holds NaN.
             ModelError: ``steps`` is out of range.
         """
-        values = self._checked(values)
+        values = self._settled(values)
         points = np.empty((len(values), self.surface_polygons(steps).n_vertices, 3))
         for start, chunk in self.surface_chunks(values, steps):
             points[start : start + len(chunk)] = chunk
@@ -174,7 +182,7 @@ class CompiledModel:
             ParameterError: the array has not P columns or holds NaN.
             ModelError: ``steps`` is out of range.
         """
-        values = self._checked(values)
+        values = self._settled(values)
         n_vertices = self.surface_polygons(steps).n_vertices
         for rows in self._batches(len(values), max(24 * n_vertices, self._row_bytes)):
             controls = self._control_rows(values[rows])
@@ -211,8 +219,24 @@ class CompiledModel:
             ParameterError: not P values, or NaN.
             ModelError: ``steps`` is out of range.
         """
-        points = self.surface_points(np.asarray(values, dtype=np.float64)[None], steps)[0]
-        return TriangleMesh(points, self.surface_triangles(steps))
+        row = self._settled(np.asarray(values, dtype=np.float64)[None])
+        points, triangles = self.surface_points(row, steps)[0], self.surface_triangles(steps)
+        if not self.model.parts:
+            return TriangleMesh(points, triangles)
+        kept = np.append(self._present(row)[0], True)[self.surface_parts(steps)]  # ALWAYS is the last one
+        new_row = np.cumsum(kept) - 1
+        return TriangleMesh(points[kept], new_row[triangles[kept[triangles[:, 0]]]])
+
+    def surface_parts(self, steps: int = SUBDIVISION_STEPS) -> Int[np.ndarray, " V"]:
+        """Return the part number of each vertex after ``steps`` subdivisions; -1 belongs to no part."""
+        self.surface_polygons(steps)
+        part_of: Int[np.ndarray, " V"] = self._parts.part_of[self._live]
+        for level in self._levels[:steps]:
+            refined = np.full(level.refined.n_vertices, ALWAYS)
+            quads = np.array(level.refined.loops)  # each begins at a vertex of the level before
+            refined[quads] = part_of[quads[:, :1]]
+            part_of = refined
+        return part_of
 
     @cached_property
     def _default_triangles(self) -> Int[np.ndarray, "F 3"]:
@@ -226,14 +250,22 @@ class CompiledModel:
         positions = np.zeros((self._n_created, 3, len(values)))
         for bound in self._steps:
             bound.step.move(positions, bound.quantities(values))
+        if self.model.parts:
+            self._parts.collapse(positions, self._present(values))
         return positions[self._live]
 
-    def _checked(self, values: Float[np.ndarray, "B P"]) -> Values:
+    def _present(self, settled: Values) -> Bool[np.ndarray, "B N"]:
+        present = np.ones((len(settled), len(self.model.parts)), dtype=bool)
+        for number, part in enumerate(self.model.parts):
+            present[:, number] = self.space.holds(part.present_when, settled)
+        return present
+
+    def _settled(self, values: Float[np.ndarray, "B P"]) -> Values:
         if values.ndim != 2 or values.shape[1] != self.n_parameters:
             raise ParameterError(f"values of shape {values.shape} are no batch of {self.n_parameters} parameters")
         if not np.isfinite(values).all():
             raise ParameterError("a value is not finite")
-        return np.asarray(values, dtype=np.float64)
+        return self.space.settle(values)
 
 
 def _compact(mesh: ControlMesh, live: Int[np.ndarray, " V"]) -> Polygons:

@@ -117,3 +117,23 @@ class Target:
     frame: Literal["own", "world"] | Element = "own"
     image: Image = ()
     pivot: tuple[Element, ...] = ()
+
+
+def group(*elements: Element, frame: Literal["own", "world"] | Element = "own") -> Target:
+    """Return elements that move as one."""
+    return Target(tuple(elements), frame)
+
+
+def mirrored(axis: Axis, *elements: Element) -> Target:
+    """Return the mirror image of the first target of an operation: these elements do the mirrored motion."""
+    return Target(tuple(elements), image=(Mirror(axis),))
+
+
+def turned(axis: Axis, angle_deg: float, *elements: Element) -> Target:
+    """Return a turned copy of the first target of an operation."""
+    return Target(tuple(elements), image=(Turn(axis, angle_deg),))
+
+
+def imaged(image: Image, *elements: Element) -> Target:
+    """Return the image of the first target of an operation under several transforms."""
+    return Target(tuple(elements), image=image)

@@ -13,6 +13,8 @@ from shapewright.modeling.compiled import CompiledModel
 from shapewright.modeling.fields import read_object, shown
 from shapewright.modeling.operations import OPERATIONS, Base, Operation
 from shapewright.modeling.parameter import NAME_PATTERN, Parameter
+from shapewright.modeling.part import MAX_PARTS, Part
+from shapewright.modeling.symmetry import NO_SYMMETRY, Symmetry
 from shapewright.modeling.upgrade import FORMAT, VERSION, upgrade_document
 from shapewright.whole_file import write_whole
 
@@ -33,6 +35,8 @@ class ProceduralModel:
         parameters: what can be varied.
         description: for people.
         closed: whether every instance is meant to be a closed surface; checked against the topology.
+        parts: optional parts; a component is in one at most.
+        symmetry: what leaves every instance as it is; a declaration that a validation checks against meshes.
     """
 
     name: str
@@ -41,6 +45,8 @@ class ProceduralModel:
     parameters: tuple[Parameter, ...] = ()
     description: str = ""
     closed: bool = True
+    parts: tuple[Part, ...] = ()
+    symmetry: Symmetry = NO_SYMMETRY
 
     def __post_init__(self) -> None:
         _check_name(self.name, "name")
@@ -53,6 +59,8 @@ class ProceduralModel:
             raise ModelError(f"more than {MAX_OPERATIONS} operations", where="operations")
         if len(self.parameters) > MAX_PARAMETERS:
             raise ModelError(f"more than {MAX_PARAMETERS} parameters", where="parameters")
+        if len(self.parts) > MAX_PARTS:
+            raise ModelError(f"more than {MAX_PARTS} parts", where="parts")
         seen: set[str] = set()
         for i, parameter in enumerate(self.parameters):
             if parameter.name in seen:
@@ -120,7 +128,7 @@ class ProceduralModel:
             raise ModelError(f"a text of at most {MAX_DESCRIPTION} characters is needed", where="description")
         if not isinstance(closed, bool):
             raise ModelError("true or false is needed", where="closed")
-        for part in ("operations", "parameters"):
+        for part in ("operations", "parameters", "parts"):
             if not isinstance(item.get(part, []), list):
                 raise ModelError("a list is needed", where=part)
         if len(item["operations"]) > MAX_OPERATIONS:
@@ -134,6 +142,8 @@ class ProceduralModel:
             ),
             description=description,
             closed=closed,
+            parts=tuple(Part.from_document(p, f"parts[{i}]") for i, p in enumerate(item.get("parts", []))),
+            symmetry=Symmetry.from_document(item.get("symmetry", {}), "symmetry"),
         )
 
     @classmethod
@@ -162,8 +172,10 @@ class ProceduralModel:
             "class": self.class_name,
             "description": self.description,
             "closed": self.closed,
+            "symmetry": self.symmetry.to_document(),
             "operations": [operation.to_document() for operation in self.operations],
             "parameters": [parameter.to_document() for parameter in self.parameters],
+            "parts": [part.to_document() for part in self.parts],
         }
 
     def to_json(self) -> str:
@@ -211,6 +223,7 @@ _PROPERTIES: dict[str, Any] = {
     "class": {"type": "string", "pattern": NAME_PATTERN},
     "description": {"type": "string", "maxLength": MAX_DESCRIPTION},
     "closed": {"type": "boolean"},
+    "symmetry": Symmetry.schema(),
     "operations": {
         "type": "array",
         "minItems": 1,
@@ -219,6 +232,7 @@ _PROPERTIES: dict[str, Any] = {
         "items": {"oneOf": [operation.schema() for operation in OPERATIONS.values()]},
     },
     "parameters": {"type": "array", "maxItems": MAX_PARAMETERS, "items": Parameter.schema()},
+    "parts": {"type": "array", "maxItems": MAX_PARTS, "items": Part.schema()},
 }
 
 

@@ -5,15 +5,17 @@ where things are (:meth:`Recorder.centre`, :meth:`Recorder.faces_towards`) and r
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 from jaxtyping import Float
 
 from shapewright.errors import ModelError
+from shapewright.modeling.component import Component
 from shapewright.modeling.control_mesh import ControlMesh
-from shapewright.modeling.elements import Axis, Element, Image, Mirror, Target, Turn, edge, face
+from shapewright.modeling.declarations import Declarations
+from shapewright.modeling.elements import Element, Target, edge, face
 from shapewright.modeling.frames import TargetFrames, frame_of_element
 from shapewright.modeling.operations import (
     OPERATIONS,
@@ -29,7 +31,7 @@ from shapewright.modeling.operations import (
     RotationExtrude,
     Scale,
 )
-from shapewright.modeling.parameter import Parameter, ParameterTarget
+from shapewright.modeling.parameter import ParameterTarget
 from shapewright.modeling.procedural_model import ProceduralModel
 
 Selection = Element | Target | Sequence[Element | Target]
@@ -37,44 +39,17 @@ Vector = tuple[float, float, float]
 ORIGIN: Vector = (0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True)
-class Component:
-    """A component that a base made.
-
-    Attributes:
-        whole: the component itself, to move all of it.
-        faces: all its first faces; a prism or a box: bottom, top, sides.
-    """
-
-    whole: Element
-    faces: tuple[Element, ...]
-
-    @property
-    def bottom(self) -> Element:
-        """The first face of a prism or box, looking down its z."""
-        return self.faces[0]
-
-    @property
-    def top(self) -> Element:
-        """The second face of a prism or box, looking along its z."""
-        return self.faces[1]
-
-    @property
-    def sides(self) -> tuple[Element, ...]:
-        """The faces around a prism or box; a box: -y, +x, +y, -x."""
-        return self.faces[2:]
-
-
-class Recorder:
+class Recorder(Declarations):
     """Models an object and writes down how.
 
     Moving methods take a parameter's name for each of the operation's modes that it shall vary, as in
-    ``recorder.extrude(top, 0.8, length="stem_length")``; parameters are declared with :meth:`parameter`, before or
+    ``recorder.extrude(top, 0.8, length="stem_length")``; parameters are declared (:class:`Declarations`) before or
     after. Every method raises ModelError for an element that does
     not exist or an impossible change.
     """
 
     def __init__(self, name: str, class_name: str, *, description: str = "", closed: bool = True) -> None:
+        super().__init__()
         self.name = name
         self.class_name = class_name
         self.description = description
@@ -82,7 +57,6 @@ class Recorder:
         self.mesh = ControlMesh()
         self._positions: Float[np.ndarray, "V 3 1"] = np.zeros((0, 3, 1))
         self._operations: list[Operation] = []
-        self._declared: dict[str, Parameter] = {}
         self._targets: dict[str, list[ParameterTarget]] = {}
 
     # ------------------------------------------------------------------ bases
@@ -277,23 +251,7 @@ class Recorder:
         along = np.array(direction) / np.linalg.norm(direction)
         return sorted(self.faces_of(component), key=lambda f: -float(self.normal(f) @ along))
 
-    # ------------------------------------------------------------------ parameters and result
-
-    def parameter(
-        self,
-        name: str,
-        label: str,
-        minimum: float,
-        maximum: float,
-        *,
-        unit: str | None = None,
-        base_value: float | None = None,
-    ) -> None:
-        """Declare a parameter; the order of declaration is the order in the model."""
-        if name in self._declared:
-            raise ModelError(f"parameter {name!r} is declared twice")
-        placeholder = (ParameterTarget(0, ""),)
-        self._declared[name] = Parameter(name, label, minimum, maximum, placeholder, unit, base_value)
+    # ------------------------------------------------------------------ result
 
     def build(self) -> ProceduralModel:
         """Return the procedural model.
@@ -307,7 +265,7 @@ class Recorder:
         parameters = []
         for declared in self._declared.values():
             targets = tuple(self._targets.get(declared.name, ()))
-            if not targets:
+            if not targets and not declared.options:
                 raise ModelError(f"parameter {declared.name!r} is declared but changes nothing")
             parameters.append(replace(declared, targets=targets))
         model = ProceduralModel(
@@ -317,6 +275,8 @@ class Recorder:
             tuple(parameters),
             self.description,
             self.closed,
+            tuple(self._parts),
+            self._symmetry,
         )
         model.compile()
         return model
@@ -364,26 +324,6 @@ def _replayed(operations: Iterable[Operation]) -> ControlMesh:
     for operation in operations:
         operation.apply(mesh)
     return mesh
-
-
-def group(*elements: Element, frame: Literal["own", "world"] | Element = "own") -> Target:
-    """Return elements that move as one."""
-    return Target(tuple(elements), frame)
-
-
-def mirrored(axis: Axis, *elements: Element) -> Target:
-    """Return the mirror image of the first target of an operation: these elements do the mirrored motion."""
-    return Target(tuple(elements), image=(Mirror(axis),))
-
-
-def turned(axis: Axis, angle_deg: float, *elements: Element) -> Target:
-    """Return a turned copy of the first target of an operation."""
-    return Target(tuple(elements), image=(Turn(axis, angle_deg),))
-
-
-def imaged(image: Image, *elements: Element) -> Target:
-    """Return the image of the first target of an operation under several transforms."""
-    return Target(tuple(elements), image=image)
 
 
 def _targets(selection: Selection) -> tuple[Target, ...]:

@@ -7,11 +7,13 @@ from shapewright.errors import ModelError
 from shapewright.modeling.fields import shown, whole_number
 
 FORMAT = "shapewright-procedural-model"
-VERSION = 1
+VERSION = 2
 
 Upgrade = Callable[[dict[str, Any]], dict[str, Any]]
 
-UPGRADES: Mapping[int, Upgrade] = {}
+UPGRADES: Mapping[int, Upgrade] = {
+    1: lambda document: document,  # version 2 only adds optional fields
+}
 """``UPGRADES[n]`` turns a document of version n into one of version n + 1. A new version adds one line here."""
 
 
