@@ -7,7 +7,7 @@ from typing import Any, NoReturn
 import typer
 from typer.core import TyperGroup
 
-from cli import classify, demo, estimate, instance, models, render, serve, train
+from cli import classify, demo, estimate, evaluate, instance, models, render, serve, train
 from cli.console import flowing
 from shapewright.errors import Cancelled, ShapewrightError
 
@@ -86,6 +86,7 @@ def shapewright(
 
 
 app.add_typer(models.app, name="models")
+app.add_typer(evaluate.app, name="evaluate")
 for verb in (
     instance.instance,
     render.render,

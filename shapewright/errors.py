@@ -50,6 +50,10 @@ class EstimationError(ShapewrightError):
     """Settings of an estimation that make no sense together."""
 
 
+class EvaluationError(ShapewrightError):
+    """A dataset that cannot be read, or an evaluation that is asked to compare nothing."""
+
+
 class Cancelled(ShapewrightError):  # noqa: N818 - it is a request that was granted, not an error
     """Somebody asked for the work to stop; raised by :meth:`shapewright.progress.Progress.report`."""
 

@@ -1,0 +1,61 @@
+"""Options that every evaluation has, and what they choose."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+DatasetFolder = Annotated[
+    Path, typer.Option("--dataset", help="Folder with labels.csv (columns file, class).", show_default=False)
+]
+ReportFile = Annotated[
+    Path | None, typer.Option("--report", help="HTML file to write, with pictures inside.", show_default=False)
+]
+Limit = Annotated[
+    int | None,
+    typer.Option(min=1, help="Take this many meshes, spread over the classes.", show_default=False),
+]
+Classes = Annotated[
+    str | None, typer.Option(metavar="A,B", help="Take meshes of these classes only.", show_default=False)
+]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of all random choices.")]
+Jobs = Annotated[
+    int | None,
+    typer.Option(min=1, help="Threads and processes (default: as many as there are cores).", show_default=False),
+]
+CacheFolder = Annotated[
+    Path | None,
+    typer.Option(
+        "--cache", help="Folder for what later runs can use again (default: in the user's cache).", show_default=False
+    ),
+]
+
+
+def names_in(text: str | None) -> list[str] | None:
+    """Split ``a,b``; ``None`` stays ``None``."""
+    return None if text is None else [name.strip() for name in text.split(",") if name.strip()]
+
+
+def cache_folder(chosen: Path | None, purpose: str) -> Path:
+    """Return the folder to keep things in: the chosen one, or one in the user's cache."""
+    if chosen is not None:
+        return chosen
+    base = os.environ.get("XDG_CACHE_HOME")
+    return (Path(base) if base else Path.home() / ".cache") / "shapewright" / purpose
+
+
+@contextmanager
+def threads(jobs: int | None) -> Iterator[int]:
+    """Let compiled kernels use this many threads at most; yields how many they use."""
+    import numba
+
+    available = numba.get_num_threads()
+    used = available if jobs is None else jobs
+    numba.set_num_threads(min(used, available))
+    try:
+        yield used
+    finally:
+        numba.set_num_threads(available)
