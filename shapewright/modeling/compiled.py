@@ -4,7 +4,6 @@ import threading
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -79,7 +78,8 @@ class CompiledModel:
             self.space.check_conditions(part.present_when, f"parts[{number}].present_when")
         self._parts = PartVertices(mesh, model.parts)
         for component in model.symmetry.apart:
-            mesh.check_component(component.id)
+            if component.id >= mesh.n_components:
+                raise ModelError(f"component {component} does not exist", where="symmetry.apart")
         self._steps = tuple(steps)
         self._n_created = mesh.n_vertices
         self._row_bytes = 24 * max(mesh.n_vertices, most_work)  # of one instance, while a step is at work
@@ -91,7 +91,9 @@ class CompiledModel:
         self.minimum = self.space.minimum
         self.maximum = self.space.maximum
         self._levels: list[SubdivisionStep] = []
-        self._growing = threading.Lock()  # several threads may ask for the same new level
+        self._level_parts = [self._parts.part_of[self._live]]
+        self._level_triangles: dict[int, Int[np.ndarray, "F 3"]] = {}
+        self._growing = threading.RLock()  # several threads may ask for the same new level
 
     # ------------------------------------------------------------------ parameters
 
@@ -208,39 +210,50 @@ class CompiledModel:
 
     def surface_triangles(self, steps: int = SUBDIVISION_STEPS) -> Int[np.ndarray, "F 3"]:
         """Return the triangles after ``steps`` subdivisions, the same for every instance."""
-        if steps == SUBDIVISION_STEPS:
-            return self._default_triangles
-        return self.surface_polygons(steps).triangles()
+        with self._growing:
+            if steps not in self._level_triangles:
+                self._level_triangles[steps] = self.surface_polygons(steps).triangles()
+            return self._level_triangles[steps]
 
     def instance(self, values: Float[np.ndarray, " P"], steps: int = SUBDIVISION_STEPS) -> TriangleMesh:
-        """Return one instance as a mesh.
+        """Return one instance as a mesh, without the parts that it lacks.
 
         Raises:
             ParameterError: not P values, or NaN.
             ModelError: ``steps`` is out of range.
         """
-        row = self._settled(np.asarray(values, dtype=np.float64)[None])
-        points, triangles = self.surface_points(row, steps)[0], self.surface_triangles(steps)
-        if not self.model.parts:
-            return TriangleMesh(points, triangles)
-        kept = np.append(self._present(row)[0], True)[self.surface_parts(steps)]  # ALWAYS is the last one
-        new_row = np.cumsum(kept) - 1
-        return TriangleMesh(points[kept], new_row[triangles[kept[triangles[:, 0]]]])
+        return next(self.instances(np.asarray(values, dtype=np.float64)[None], steps))
+
+    def instances(self, values: Float[np.ndarray, "B P"], steps: int = SUBDIVISION_STEPS) -> Iterator[TriangleMesh]:
+        """Yield the instance of each row as :meth:`instance` does; evaluated in chunks, in bounded memory.
+
+        Raises:
+            ParameterError: the array has not P columns or holds NaN.
+            ModelError: ``steps`` is out of range.
+        """
+        values = self._settled(values)
+        triangles = self.surface_triangles(steps)
+        present = self._present(values)
+        for start, chunk in self.surface_chunks(values, steps):
+            for row, points in enumerate(chunk, start):
+                if present[row].all():
+                    yield TriangleMesh(points, triangles)
+                else:
+                    kept = np.append(present[row], True)[self.surface_parts(steps)]  # ALWAYS is the last one
+                    new_row = np.cumsum(kept) - 1
+                    yield TriangleMesh(points[kept], new_row[triangles[kept[triangles[:, 0]]]])
 
     def surface_parts(self, steps: int = SUBDIVISION_STEPS) -> Int[np.ndarray, " V"]:
         """Return the part number of each vertex after ``steps`` subdivisions; -1 belongs to no part."""
-        self.surface_polygons(steps)
-        part_of: Int[np.ndarray, " V"] = self._parts.part_of[self._live]
-        for level in self._levels[:steps]:
-            refined = np.full(level.refined.n_vertices, ALWAYS)
-            quads = np.array(level.refined.loops)  # each begins at a vertex of the level before
-            refined[quads] = part_of[quads[:, :1]]
-            part_of = refined
-        return part_of
-
-    @cached_property
-    def _default_triangles(self) -> Int[np.ndarray, "F 3"]:
-        return self.surface_polygons(SUBDIVISION_STEPS).triangles()
+        with self._growing:
+            self.surface_polygons(steps)
+            while len(self._level_parts) <= steps:
+                level = self._levels[len(self._level_parts) - 1]
+                refined = np.full(level.refined.n_vertices, ALWAYS)
+                quads = np.array(level.refined.loops)  # each begins at a vertex of the level before
+                refined[quads] = self._level_parts[-1][quads[:, :1]]
+                self._level_parts.append(refined)
+            return self._level_parts[steps]
 
     def _batches(self, count: int, row_bytes: int) -> Iterator[slice]:
         size = max(1, _CHUNK_BYTES // row_bytes)
