@@ -6,7 +6,7 @@ import hypothesis.strategies as st
 import numpy as np
 
 from shapewright.errors import ModelError
-from shapewright.modeling import ProceduralModel, Recorder, mirrored
+from shapewright.modeling import Condition, ProceduralModel, Recorder, mirrored, when
 from shapewright.modeling.elements import Element, edge, face
 
 ACTIONS = (
@@ -22,6 +22,7 @@ ACTIONS = (
     "dissolve",
     "mark_sharp",
     "component",
+    "switch",
 )
 
 
@@ -34,18 +35,48 @@ class Recipe:
     seed: int
 
     def build(self) -> ProceduralModel:
-        """Model it: closed, each operation varied by a parameter of its own where it can be."""
+        """Model it: closed, each operation varied by a parameter of its own where it can be.
+
+        What comes after a switch depends on it: parameters are active and components are there while it is on. A
+        parameter keeps below the one before it.
+        """
         recorder = Recorder("random", "anything")
         recorder.base("prism", (2.0, 1.5, 1.0), sides=self.sides)
         rng = np.random.default_rng(self.seed)
+        switched: tuple[Condition, ...] = ()
+        limited_by = ""
+        parts: list[tuple[list[int], tuple[Condition, ...]]] = []
         for number, action in enumerate(self.actions):
+            name = f"p{number}"
+            if action == "switch":
+                recorder.switch(name, f"switch {number}", active_when=switched)
+                switched = (*switched, when(name, 1))
+                continue
+            known = recorder.mesh.n_components
             try:
-                mode = perform(recorder, action, rng, f"p{number}")
+                mode = perform(recorder, action, rng, name)
             except ModelError:
                 continue  # impossible there; the recorder is as it was
+            made = list(range(known, recorder.mesh.n_components))
+            if made and switched:
+                parts.append((made, switched))
             if mode is not None:
-                recorder.parameter(f"p{number}", f"parameter {number}", 0.5, 1.0 if mode == "position" else 2.0)
+                maximum = 1.0 if mode == "position" else 2.0
+                recorder.parameter(name, f"parameter {number}", 0.5, maximum, active_when=switched)
+                if limited_by:
+                    recorder.limit(name, maximum=(limited_by, 0.5, 0.5))
+                limited_by = name
+        for number, (components, conditions) in enumerate(parts):
+            whole = [Element("component", c) for c in components if _stands_alone(recorder, c)]
+            if whole:
+                recorder.part(f"part {number}", whole, conditions)
         return recorder.build()
+
+
+def _stands_alone(recorder: Recorder, component: int) -> bool:
+    """Tell whether a component is there and no later bridge joined it to another."""
+    owners = [{recorder.mesh.component_of(v) for v in loop} for loop in recorder.mesh.faces.values()]
+    return {component} in owners and not any(component in found and len(found) > 1 for found in owners)
 
 
 def recipes() -> st.SearchStrategy[Recipe]:

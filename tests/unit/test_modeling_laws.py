@@ -39,7 +39,7 @@ def test_a_document_replays_to_the_same_model_ids_and_mesh(recipe: Recipe) -> No
 @given(recipes())
 def test_ones_give_the_base_model(recipe: Recipe) -> None:
     model = recipe.build()
-    bare = replace(model, parameters=()).compile()
+    bare = replace(model, parameters=(), parts=()).compile()
     compiled = model.compile()
     base, ones = bare.surface_points(np.ones((1, 0))), compiled.surface_points(compiled.base_values()[None])
     np.testing.assert_allclose(ones, base, atol=1e-12)
@@ -78,7 +78,7 @@ def test_every_parameter_moves_something(recipe: Recipe) -> None:
     model = recipe.build()
     compiled = model.compile()
     for column, parameter in enumerate(model.parameters):
-        if any(_vanishes(compiled, target.operation) for target in parameter.targets):
+        if parameter.options or any(_vanishes(compiled, target.operation) for target in parameter.targets):
             continue
         values = np.ones((2, compiled.n_parameters))
         values[1, column] = parameter.minimum

@@ -272,3 +272,25 @@ def test_a_refused_operation_leaves_the_recorder_as_it_was() -> None:
         recorder.extrude([TOP, face(99)], 1.0)
     assert recorder.mesh.faces == cube().mesh.faces
     assert len(recorder.build().operations) == 1
+
+
+def test_every_target_turns_about_its_own_hinge() -> None:
+    recorder = cube()
+    right, left = recorder.mesh.face(RIGHT.id), recorder.mesh.face(5)
+    arms = [Target((RIGHT,)), mirrored("x", face(5))]
+    recorder.extrude(arms, 3.0)
+    hinges = [tuple(vertex(v) for v in loop) for loop in (right, left)]
+    ends = [Target((RIGHT,), "world", pivot=hinges[0]), Target((face(5),), "world", (Mirror("x"),), hinges[1])]
+    recorder.rotate(ends, 90.0, "v")
+    np.testing.assert_allclose(recorder.centre(RIGHT), [1, 0, -3], atol=1e-12)
+    np.testing.assert_allclose(recorder.centre(face(5)), [-1, 0, -3], atol=1e-12)
+    model = recorder.build()
+    assert type(model).from_json(model.to_json()) == model
+
+
+def test_a_hinge_means_nothing_to_a_move() -> None:
+    hinged = Target((TOP,), pivot=(BOTTOM,))
+    recorder = cube()
+    for refused in (lambda: recorder.drag([hinged], 1.0), lambda: recorder.box(1.0, 1.0, 1.0, anchor=hinged)):
+        with pytest.raises(ModelError, match="turns about no pivot"):
+            refused()
