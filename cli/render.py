@@ -3,7 +3,7 @@
 import math
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -12,6 +12,12 @@ from cli.picture import save_picture
 from cli.sources import load_compiled, read_assignments
 from models_store.library.shipped import list_shipped
 from shapewright.errors import RenderingError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from jaxtyping import Float, UInt8
+
+    from shapewright.mesh import TriangleMesh
 
 
 class Style(StrEnum):
@@ -36,7 +42,15 @@ def render(
         ),
     ],
     output: Annotated[Path, typer.Option("--output", "-o", help="PNG file to write.", show_default=False)],
-    size: Annotated[int, typer.Option(min=16, max=4096, help="Width and height in pixels.")] = 512,
+    size: Annotated[
+        int | None,
+        typer.Option(
+            min=16,
+            max=4096,
+            help="Width and height in pixels (default: 512, or 192 for each picture of a sheet).",
+            show_default=False,
+        ),
+    ] = None,
     style: Annotated[Style, typer.Option(help="shaded for people; edges is what the classifier sees.")] = Style.shaded,
     up: Annotated[Up, typer.Option(help="The axis that points upwards; z for the models that ship.")] = Up.z,
     turn: Annotated[float, typer.Option(help="Degrees around the upright axis.")] = 35.0,
@@ -44,6 +58,12 @@ def render(
     assignments: Annotated[
         list[str] | None, typer.Option("--set", "-s", metavar="NAME=X", help="A parameter value of a model.")
     ] = None,
+    sheet: Annotated[
+        bool,
+        typer.Option("--contact-sheet", help="Draw a model's base, each parameter at its ends, random variations."),
+    ] = False,
+    variations: Annotated[int, typer.Option(min=0, max=1000, help="Random variations on a contact sheet.")] = 24,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the variations.")] = 0,
     as_json: AsJson = False,
 ) -> None:
     """Draw a mesh or a procedural model into a PNG file, with headless OpenGL.
@@ -52,22 +72,61 @@ def render(
 
       [bold]shapewright render chair.obj -o chair.png[/]
       [bold]shapewright render table --set leg_length=1.3 --turn 45 -o table.png[/]
+      [bold]shapewright render table --contact-sheet -o sheet.png[/]
     """
     if output.suffix.lower() != ".png":
         raise RenderingError("pictures are written as .png", where=str(output))
-    from shapewright.mesh_file import load_mesh
     from shapewright.rendering import render_mesh, three_quarter_view
 
-    if source in list_shipped() or source.endswith(".json"):
-        compiled = load_compiled(source)
-        mesh = compiled.instance(compiled.values_from_mapping(read_assignments(assignments, None)))
-    else:
-        mesh = load_mesh(source, in_child=True)
     view = three_quarter_view(up.value, azimuth_rad=math.radians(turn), elevation_rad=math.radians(tilt))
-    pixels = render_mesh(mesh, rotation=view, size=size, style=style.value)
+    if sheet:
+        pixels = _contact_sheet(source, assignments, variations, seed, view, size or 192, style)
+    else:
+        pixels = render_mesh(_mesh(source, assignments), rotation=view, size=size or 512, style=style.value)
     output.parent.mkdir(parents=True, exist_ok=True)
     save_picture(pixels, output)
     if as_json:
-        print_json({"file": str(output), "width": size, "height": size, "style": style.value})
+        height, width = pixels.shape[:2]
+        print_json({"file": str(output), "width": width, "height": height, "style": style.value})
     else:
         typer.echo(str(output))
+
+
+def _is_model(source: str) -> bool:
+    return source in list_shipped() or source.endswith(".json")
+
+
+def _mesh(source: str, assignments: list[str] | None) -> "TriangleMesh":
+    from shapewright.mesh_file import load_mesh
+
+    if not _is_model(source):
+        return load_mesh(source, in_child=True)
+    compiled = load_compiled(source)
+    return compiled.instance(compiled.values_from_mapping(read_assignments(assignments, None)))
+
+
+def _contact_sheet(
+    source: str,
+    assignments: list[str] | None,
+    variations: int,
+    seed: int,
+    view: "Float[np.ndarray, '3 3']",
+    size: int,
+    style: Style,
+) -> "UInt8[np.ndarray, 'H W 3']":
+    import numpy as np
+
+    from shapewright.rendering import compose_contact_sheet
+
+    if not _is_model(source):
+        raise RenderingError("only a model has a contact sheet", where=source)
+    compiled = load_compiled(source)
+    return compose_contact_sheet(
+        compiled,
+        base=compiled.values_from_mapping(read_assignments(assignments, None)),
+        variations=variations,
+        rng=np.random.default_rng(seed),
+        rotation=view,
+        size=size,
+        style=style.value,
+    )

@@ -7,6 +7,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from shapewright.rendering.contact_sheet import compose_contact_sheet
     from shapewright.rendering.context import context_is_open, renderer_name, shared_context
     from shapewright.rendering.images import render_images
     from shapewright.rendering.pictures import compose_side_by_side, render_mesh
@@ -18,6 +19,7 @@ _HOMES = {
     "STYLES": "styles",
     "WINDOW": "styles",
     "ImageStyle": "styles",
+    "compose_contact_sheet": "contact_sheet",
     "compose_side_by_side": "pictures",
     "context_is_open": "context",
     "even_views": "views",
@@ -34,6 +36,7 @@ __all__ = [
     "STYLES",
     "WINDOW",
     "ImageStyle",
+    "compose_contact_sheet",
     "compose_side_by_side",
     "context_is_open",
     "even_views",

@@ -43,7 +43,7 @@ def render_mesh(
     """
     turned = three_quarter_view() if rotation is None else rotation
     look = STYLES[style] if color is None else replace(STYLES[style], colors=(color,) * 3)
-    picture: UInt8[np.ndarray, "H W 3"] = _draw([mesh], [1], turned, size, look)[0]
+    picture: UInt8[np.ndarray, "H W 3"] = draw_together([mesh], [1], turned, size, look)[0]
     return picture
 
 
@@ -73,19 +73,22 @@ def compose_side_by_side(
     """
     turned = three_quarter_view() if rotation is None else rotation
     look = STYLES["shaded"]
-    blue, orange = _draw([query, fitted], [QUERY_TINT, FITTED_TINT], turned, size, look)
+    blue, orange = draw_together([query, fitted], [QUERY_TINT, FITTED_TINT], turned, size, look)
     overlay = ((blue.astype(np.uint16) + orange + 1) // 2).astype(np.uint8)
     return np.concatenate([blue, orange, overlay], axis=1)
 
 
-def _draw(
+def draw_together(
     meshes: Sequence[TriangleMesh],
     tints: Sequence[int],
     rotation: Float[np.ndarray, "3 3"],
     size: int,
     style: Style,
 ) -> UInt8[np.ndarray, "N H W 3"]:
-    """One picture a mesh in its colour, all under the framing that shows every mesh whole."""
+    """One picture a colour number, each of its mesh, all under the framing that shows every mesh whole.
+
+    Meshes beyond the last colour are framed with the others and not drawn.
+    """
     if size < 1:
         raise RenderingError("a picture has at least one pixel", where="size")
     look = replace(style, oversampling=4 if size <= LARGE else 2)
@@ -103,7 +106,7 @@ def _draw(
     with shared_context() as context:
         renderer = renderer_for(context)
         renderer.tiles_a_batch(size, look)
-        out = np.empty((len(meshes), size, size, 3), dtype=np.uint8)
+        out = np.empty((len(tints), size, size, 3), dtype=np.uint8)
         for number, tint in enumerate(tints):
             scene = Scene(
                 positions=positions,
