@@ -240,9 +240,8 @@ def outward(compiled: CompiledModel, points: np.ndarray) -> np.ndarray:
 
 def test_the_feet_of_a_table_stay_under_its_corners() -> None:
     for length, width in ((0.6, 1.4), (1.5, 0.6)):
-        points = instance_points(
-            "table", top_length=length, top_width=width, leg_splay=0.0, leg_inset=0.0, leg_taper=0.0
-        )
+        straight = {"leg_splay": 0.0, "leg_inset": 0.0, "leg_inset_sides": 0.0, "foot_thickness": 1.25}
+        points = instance_points("table", top_length=length, top_width=width, **straight)
         top = points[points[:, 2] > 0.0][:, :2]
         feet = points[points[:, 2] < points[:, 2].min() + 1e-9][:, :2]
         np.testing.assert_allclose(feet.max(axis=0), top.max(axis=0), atol=1e-9)
