@@ -48,6 +48,20 @@ def stretch(
     shift(recorder, targets, (along[0], along[1], along[2]), name)
 
 
+def spread(
+    recorder: Recorder, components: Iterable[Component], axis: Axis, half: float, edge: float, name: str
+) -> None:
+    """Let a parameter move components outwards, those at ``edge`` like :meth:`stretch`, those within in proportion."""
+    column = AXES.index(axis)
+    distances: dict[float, tuple[list[Component], list[Component]]] = {}
+    for component in components:
+        at = float(recorder.centre(component.whole)[column])
+        if abs(at) > TOLERANCE:
+            distances.setdefault(round(abs(at), 6), ([], []))[int(at < 0)].append(component)
+    for distance, sides in distances.items():
+        stretch(recorder, [*sides[0], *sides[1]], axis, half * distance / edge, name)
+
+
 def pull(
     recorder: Recorder, components: Iterable[Component], axis: Axis, by: float, name: str, *, beyond: float
 ) -> None:
