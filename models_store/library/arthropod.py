@@ -1,0 +1,237 @@
+"""Modelling aid for insects and spiders: pairs of jointed legs, feelers, and bulbs of bodies."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from models_store.library.beam import at
+from models_store.library.loft import ORIGIN, Loft, Section, Vector, loft, move
+from shapewright.modeling import Component, Condition, Element, Mirror, Recorder, Target, when
+
+LEG_SIDES = 4
+KNEE, ANKLE = 2, 4
+"""Sections of a leg: root, thigh, knee, shin, ankle, tip."""
+STEEPEST_SHIN_DEG = 107.0
+_PLACES = (0.0, 0.21, 0.42, 0.62, 0.82, 1.0)
+_THICKNESS = (1.15, 1.0, 1.0, 0.85, 0.7, 0.35)
+
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class LegShape:
+    """What all legs of an animal have in common; ranges are relative.
+
+    Attributes:
+        raise_deg: how far thighs rise from the horizontal; knee and ankle bend down from there.
+        inset: how far the root lies inside the body, from where it is anchored.
+    """
+
+    length: float
+    thickness: float
+    raise_deg: float
+    knee_deg: float
+    ankle_deg: float
+    inset: float
+    length_range: Range = (0.6, 1.7)
+    thickness_range: Range = (0.5, 2.2)
+    raise_range: Range = (0.0, 1.8)
+    knee_range: Range = (0.2, 1.5)
+    ankle_range: Range = (-0.8, 2.0)
+    spread_range: Range = (0.3, 1.35)
+
+
+@dataclass(frozen=True)
+class Station:
+    """Where a pair of legs is: anchors on both sides, and its heading (0: sideways, above 0: towards the head)."""
+
+    anchors: tuple[Target, Target]
+    heading_deg: float
+
+
+def bulb(
+    length: float, width: float, height: float, *, start: float, count: int = 6, peak: float = 1.0
+) -> list[Section]:
+    """Return the sections of a rounded body; a ``peak`` above 1 moves the widest place towards the start."""
+    angles = [math.radians(18.0 + 144.0 * i / (count - 1)) for i in range(count)]
+    lowest, highest = 1 - math.cos(angles[0]), 1 - math.cos(angles[-1])
+    shares = [(1 - math.cos(angle) - lowest) / (highest - lowest) for angle in angles]
+    return [
+        Section(start + length * share**peak, width * math.sin(angle), height * math.sin(angle))
+        for share, angle in zip(shares, angles, strict=True)
+    ]
+
+
+def flanks(recorder: Recorder, body: Loft, number: int, *, down: float = 0.0) -> tuple[Target, Target]:
+    """Return anchors at the left and the right of a section; ``down`` above 0 looks below the middle."""
+    left, right = (at(recorder, body, number, (0.0, y, -down)) for y in (1.0, -1.0))
+    return left, replace(right, image=(Mirror("y"),))
+
+
+def hub(body: Loft, number: int) -> Target:
+    """Return the anchor in the middle of a section."""
+    return Target(body.rings[number][0], "world")
+
+
+def legs(recorder: Recorder, shape: LegShape, stations: Sequence[Station]) -> list[Loft]:
+    """Model pairs of legs, the front one first, and declare their parameters."""
+    _declare(recorder, shape)
+    sections = [
+        Section(place * shape.length, relative * shape.thickness, relative * shape.thickness)
+        for place, relative in zip(_PLACES, _THICKNESS, strict=True)
+    ]
+    pairs = [
+        loft(recorder, "y", sections, sides=LEG_SIDES, offset=(0.0, -shape.inset, 0.0), anchors=station.anchors)
+        for station in stations
+    ]
+    every = range(len(sections))
+    recorder.scale([t for p in pairs for t in p.sections(*every)], 1.0, "uz", size="leg_thickness")
+    recorder.scale([t for p in pairs for t in p.sections(1, 3)], 1.0, "uz", size="leg_bulge")
+    recorder.scale([t for p in pairs for t in p.body(hinge=0)], 1.0, "v", size="leg_length")
+    recorder.scale(pairs[0].body(hinge=0), 1.0, "v", size="front_leg_length")
+    recorder.scale(pairs[-1].body(hinge=0), 1.0, "v", size="rear_leg_length")
+    _bend(recorder, pairs, 0, shape.raise_deg, "leg_raise")
+    _bend(recorder, pairs, KNEE, -shape.knee_deg, "knee_bend")
+    _bend(recorder, pairs, ANKLE, -shape.ankle_deg, "ankle_bend")
+    for pair, station in zip(pairs, stations, strict=True):
+        if station.heading_deg:
+            recorder.rotate(pair.body(hinge=0), -station.heading_deg, "z", angle="leg_spread")
+    swept = [t for p in pairs for t in p.body(hinge=0)]
+    recorder.rotate(swept, -20.0, "z")
+    recorder.rotate(swept, 20.0, "z", angle="leg_sweep")
+    return pairs
+
+
+def _declare(recorder: Recorder, shape: LegShape) -> None:
+    recorder.parameter("leg_length", "Leg length", *shape.length_range, base_value=shape.length)
+    recorder.parameter("leg_thickness", "Leg thickness", *shape.thickness_range, base_value=shape.thickness)
+    recorder.parameter("leg_bulge", "Thickness of thigh and shin between the joints", 0.5, 2.0)
+    recorder.parameter("front_leg_length", "Length of the front legs beside the others", 0.7, 1.4)
+    recorder.parameter("rear_leg_length", "Length of the rear legs beside the others", 0.7, 1.4)
+    recorder.parameter("leg_raise", "Rise of the thighs (deg)", *shape.raise_range, base_value=shape.raise_deg)
+    recorder.parameter("knee_bend", "Bend of the knees (deg)", *shape.knee_range, base_value=shape.knee_deg)
+    _keep_feet_low(recorder, shape)
+    recorder.parameter("ankle_bend", "Bend of the ankles (deg)", *shape.ankle_range, base_value=shape.ankle_deg)
+    recorder.parameter("leg_spread", "Spread of the legs forwards and backwards", *shape.spread_range)
+    recorder.parameter("leg_sweep", "Legs turned backwards (deg)", 0.0, 2.0, base_value=20.0)
+
+
+def _keep_feet_low(recorder: Recorder, shape: LegShape) -> None:
+    """The higher the thighs rise the more the knees bend, or feet end up in the air; and shins never curl under."""
+    per_raise = 1.35 * shape.raise_deg / shape.knee_deg
+    recorder.limit("knee_bend", minimum=("leg_raise", -8.0 / shape.knee_deg, per_raise))
+    as_steep = (STEEPEST_SHIN_DEG / shape.knee_deg, shape.raise_deg / shape.knee_deg)
+    recorder.limit("knee_bend", maximum=("leg_raise", *as_steep))
+
+
+def _bend(recorder: Recorder, pairs: Sequence[Loft], joint: int, angle_deg: float, angle: str) -> None:
+    """Bend legs at a joint, whose section turns by half the angle as a mitre does; the root turns all the way."""
+    turned = [t for p in pairs for t in p.beyond(joint, hinge=joint)]
+    if joint == 0:
+        recorder.rotate(turned, angle_deg, "u", angle=angle)
+        return
+    recorder.rotate(turned, angle_deg / 2, "u", angle=angle)
+    recorder.rotate([t for p in pairs for t in p.beyond(joint + 1, hinge=joint)], angle_deg / 2, "u", angle=angle)
+
+
+@dataclass(frozen=True)
+class Feelers:
+    """A pair of antennae, jaws or tail bristles.
+
+    Attributes:
+        name, label: what their parameters begin with.
+        heading_deg: away from straight ahead, outwards.
+        raise_deg: up from the horizontal.
+        curve_deg: how far they turn inwards along their length.
+    """
+
+    name: str
+    label: str
+    length: float
+    thickness: float
+    heading_deg: float
+    raise_deg: float = 0.0
+    curve_deg: float = 0.0
+    flatness: float = 1.0
+    length_range: Range = (0.4, 2.0)
+    spread_range: Range = (0.3, 2.0)
+    curve_range: Range = (0.0, 2.0)
+
+
+def feelers(
+    recorder: Recorder,
+    shape: Feelers,
+    anchors: tuple[Target, Target],
+    *,
+    offset: Vector = ORIGIN,
+    active_when: Sequence[Condition] = (),
+) -> Loft:
+    """Model a pair of feelers that start from both anchors, and declare their parameters."""
+    recorder.parameter(
+        f"{shape.name}_length",
+        f"{shape.label} length",
+        *shape.length_range,
+        base_value=shape.length,
+        active_when=active_when,
+    )
+    recorder.parameter(f"{shape.name}_spread", f"{shape.label} spread", *shape.spread_range, active_when=active_when)
+    sections = [
+        Section(place * shape.length, wide * shape.thickness, wide * shape.thickness * shape.flatness)
+        for place, wide in ((0.0, 1.0), (0.35, 1.0), (0.7, 0.8), (1.0, 0.3))
+    ]
+    made = loft(recorder, "x", sections, sides=LEG_SIDES, offset=offset, anchors=anchors)
+    recorder.scale(made.body(hinge=0), 1.0, "u", size=f"{shape.name}_length")
+    if shape.curve_deg:
+        name = f"{shape.name}_curve"
+        recorder.parameter(name, f"{shape.label} curve", *shape.curve_range, active_when=active_when)
+        for joint in (1, 2):
+            recorder.rotate(made.beyond(joint, hinge=joint), -shape.curve_deg / 2, "z", angle=name)
+    if shape.raise_deg:
+        name = f"{shape.name}_raise"
+        recorder.parameter(
+            name, f"{shape.label} rise (deg)", -1.0, 2.0, base_value=shape.raise_deg, active_when=active_when
+        )
+        recorder.rotate(made.body(hinge=0), -shape.raise_deg, "v", angle=name)
+    recorder.rotate(made.body(hinge=0), shape.heading_deg, "z", angle=f"{shape.name}_spread")
+    return made
+
+
+def face(
+    recorder: Recorder, head: Loft, antennae: tuple[Feelers, int, Vector], jaws: tuple[Feelers, int, Vector]
+) -> None:
+    """Add antennae high and jaws low on a head, each a switch; given are shape, section of the head, and offset."""
+    for key, label, down, (shape, number, offset) in (
+        ("antennae", "Antennae", -0.6, antennae),
+        ("jaws", "Jaws", 0.0, jaws),
+    ):
+        recorder.switch(key, label)
+        there = (when(key, 1),)
+        made = feelers(recorder, shape, flanks(recorder, head, number, down=down), offset=offset, active_when=there)
+        recorder.part(label.lower(), components(made), present_when=there)
+
+
+def components(*bodies: Loft) -> list[Component | Element]:
+    """Return the components of bodies, for a part."""
+    return [component for body in bodies for component in body.components]
+
+
+def resize(recorder: Recorder, body: Loft, prefix: str, label: str, ranges: Sequence[Range], *, hinge: int) -> None:
+    """Let the length (x), width (y) and height (z) of a body be parameters, about one of its sections."""
+    names = (("length", "u"), ("width", "v"), ("height", "z"))
+    for (what, axis), limits in zip(names, ranges, strict=True):
+        recorder.parameter(f"{prefix}_{what}", f"{label} {what}", *limits)
+        recorder.scale(body.body(hinge=hinge), 1.0, axis, size=f"{prefix}_{what}")
+
+
+def tilt(recorder: Recorder, body: Loft, name: str, label: str, angle_deg: float, *, hinge: int, up: float) -> None:
+    """Let a body turn about the y axis: ``angle_deg`` down to ``up`` times as far upwards of what lies behind."""
+    recorder.parameter(name, label, 0.0, 1.0 + up, base_value=angle_deg)
+    recorder.rotate(body.body(hinge=hinge), -angle_deg, "v")
+    recorder.rotate(body.body(hinge=hinge), angle_deg, "v", angle=name)
+
+
+def lift(recorder: Recorder, body: Loft, name: str, label: str, by: float) -> None:
+    """Let a body move up and down by at most a distance."""
+    recorder.parameter(name, label, 0.0, 2.0, base_value=by)
+    move(recorder, body.body(), (0.0, 0.0, -by))
+    move(recorder, body.body(), (0.0, 0.0, by), length=name)
