@@ -1,0 +1,1 @@
+"""The procedural model ``spider_ant``: see build.py."""
