@@ -1,0 +1,1 @@
+"""The procedural model ``spider_beetle``: see build.py."""
