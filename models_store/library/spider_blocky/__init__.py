@@ -1,0 +1,1 @@
+"""The procedural model ``spider_blocky``: see build.py."""
