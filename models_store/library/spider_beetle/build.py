@@ -21,7 +21,7 @@ from models_store.library.loft import Loft, Section, loft, move
 from shapewright.modeling import ProceduralModel, Recorder, when
 
 LEGS = LegShape(
-    length=1.2, thickness=0.09, raise_deg=22.0, knee_deg=55.0, ankle_deg=12.0, inset=0.16, raise_range=(-0.5, 2.0)
+    length=1.2, thickness=0.09, raise_deg=22.0, knee_deg=55.0, ankle_deg=12.0, inset=0.20, raise_range=(-0.5, 2.0)
 )
 HEADINGS_DEG = (38.0, -8.0, -42.0)
 HULL = (
@@ -52,13 +52,14 @@ def build() -> ProceduralModel:
     hull = loft(recorder, "x", HULL)
     resize(recorder, hull, "hull", "Hull", ((0.6, 1.6), (0.55, 1.35), (0.45, 1.7)), hinge=5)
     recorder.parameter("belly_rise", "Flatness of the belly", -0.5, 1.7, base_value=BELLY_RISE)
+    recorder.limit("belly_rise", maximum=("hull_height", 0.1, 1.3))  # the belly stays below the back
     bellies = [lower(recorder, hull, number) for number in range(1, 5)]
     move(recorder, bellies, (0.0, 0.0, BELLY_RISE), length="belly_rise")
     shield = loft(recorder, "x", SHIELD, anchors=[hub(hull, 5)])
     resize(recorder, shield, "shield", "Shield", ((0.5, 1.8), (0.5, 1.3), (0.6, 1.6)), hinge=0)
     head = _head(recorder, shield)
     stations = [
-        Station(flanks(recorder, body, number, down=0.9), heading)
+        Station(flanks(recorder, body, number, down=0.5), heading)
         for (body, number), heading in zip(((shield, 2), (hull, 4), (hull, 3)), HEADINGS_DEG, strict=True)
     ]
     legs(recorder, LEGS, stations)
