@@ -1,11 +1,15 @@
 """`shapewright models`: the procedural models that ship, and files of your own."""
 
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cli.console import AsJson, print_json, stdout
-from cli.sources import load_compiled, load_model
+from cli.console import AsJson, print_json, shown_progress, stdout
+from cli.sources import load_model
 from models_store.library.shipped import list_shipped, load_shipped
 from shapewright.errors import ShapewrightError
 
@@ -13,8 +17,6 @@ if TYPE_CHECKING:
     from shapewright.modeling import ProceduralModel
 
 app = typer.Typer(rich_markup_mode="rich")
-
-VARIATIONS_TRIED = 16
 
 
 @app.callback(invoke_without_command=True)
@@ -89,41 +91,94 @@ def show_model(
 
 @app.command("validate")
 def validate_models(
-    files: Annotated[list[str], typer.Argument(help="JSON files (or names of shipped models).", show_default=False)],
+    files: Annotated[
+        list[str] | None, typer.Argument(help="JSON files (or names of shipped models).", show_default=False)
+    ] = None,
+    every: Annotated[bool, typer.Option("--all", help="Check every model that ships.")] = False,
+    variations: Annotated[int, typer.Option(min=0, help="Random variations of each model.")] = 1000,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the variations.")] = 0,
+    jobs: Annotated[int, typer.Option(min=1, help="Models that are checked at once.")] = 1,
     as_json: AsJson = False,
 ) -> None:
-    """Check procedural models: the document, every operation, and that random variations are finite meshes.
+    """Check procedural models: the document, replay, topology, symmetry, random variations, effect of parameters.
 
-    Exit status 2 if one of them is not valid.
+    Variations must be finite, without faces of no area, no component inside out or floating apart, of a sane extent.
+    Exit status 2 if one of the models is not valid.
 
-    Example:  [bold]shapewright models validate my-model.json[/]
+    Examples:
+
+      [bold]shapewright models validate my-model.json[/]
+      [bold]shapewright models validate --all --jobs 4[/]
     """
-    results = [_validate(file) for file in files]
+    if every == bool(files):
+        raise typer.BadParameter("name models, or take --all", param_hint="FILES")
+    chosen = [(file, variations, seed) for file in (list_shipped() if every else files or [])]
+    results = []
+    with shown_progress("validating") as progress, _mapping(min(jobs, len(chosen))) as mapped:
+        for number, result in enumerate(mapped(_validate, chosen), start=1):
+            progress.report(number / len(chosen), result["file"])
+            results.append(result)
+            if not as_json:
+                _print_validation(result)
     if as_json:
         print_json({"files": results})
-    else:
-        for result in results:
-            if result["valid"]:
-                typer.echo(f"{result['file']}: valid ({result['parameters']} parameters)")
-            else:
-                typer.echo(f"shapewright: {result['file']}: {result['error']}", err=True)
     if not all(result["valid"] for result in results):
         raise typer.Exit(2)
 
 
-def _validate(file: str) -> dict[str, Any]:
+@contextmanager
+def _mapping(jobs: int) -> Iterator[Callable[..., Iterable[dict[str, Any]]]]:
+    """Yield ``map``, or one over processes."""
+    if jobs == 1:
+        yield map
+        return
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
+        yield pool.map
+
+
+def _validate(request: tuple[str, int, int]) -> dict[str, Any]:
     import numpy as np
 
+    from shapewright.modeling.validation import CHECKS, validate_model
+
+    file, variations, seed = request
+    started_s = time.monotonic()
     try:
-        compiled = load_compiled(file)
-        values = compiled.random_values(np.random.default_rng(0), VARIATIONS_TRIED)
-        points = compiled.surface_points(np.vstack([compiled.base_values()[None], values]))
+        loaded = load_model(file)
+        shipped = list_shipped().get(file)
+        text = None if shipped is None else shipped.read_text(encoding="utf-8")
+        findings = validate_model(loaded, variations=variations, rng=np.random.default_rng(seed), document=text)
     except ShapewrightError as error:
-        return {"file": file, "valid": False, "error": error.message, "where": error.where}
-    if not np.isfinite(points).all():
-        error_text = "some parameter values give coordinates that are not finite"
-        return {"file": file, "valid": False, "error": error_text, "where": None}
-    return {"file": file, "valid": True, "parameters": len(compiled.model.parameters), "digest": compiled.model.digest}
+        return {"file": file, "valid": False, "error": error.message, "where": error.where, "findings": []}
+    failed = {finding.check for finding in findings}
+    return {
+        "file": file,
+        "valid": not findings,
+        "model": loaded.name,
+        "class_name": loaded.class_name,
+        "parameters": len(loaded.parameters),
+        "digest": loaded.digest,
+        "variations": variations,
+        "checks": {check: check not in failed for check in CHECKS},
+        "findings": [asdict(finding) for finding in findings],
+        "seconds": round(time.monotonic() - started_s, 3),
+    }
+
+
+def _print_validation(result: dict[str, Any]) -> None:
+    if "error" in result:
+        typer.echo(f"shapewright: {result['file']}: {result['error']}", err=True)
+        return
+    checks = " ".join(check if good else check.upper() + "!" for check, good in result["checks"].items())
+    verdict = "valid" if result["valid"] else f"{len(result['findings'])} findings"
+    counts = f"{result['parameters']} parameters, {result['variations']} variations"
+    typer.echo(f"{result['file']}: {verdict} ({counts}; {checks}; {result['seconds']:.1f} s)")
+    for finding in result["findings"]:
+        place = f"{finding['check']}: {finding['where']}" if finding["where"] else finding["check"]
+        typer.echo(f"shapewright: {result['file']}: {place}: {finding['message']}", err=True)
 
 
 def _summary(model: "ProceduralModel") -> dict[str, Any]:

@@ -41,7 +41,7 @@ def test_show_tells_ranges_and_units(lamp: Path) -> None:
 
 
 def test_validate_accepts_a_good_model(lamp: Path) -> None:
-    assert "valid (2 parameters)" in shapewright("models", "validate", lamp).stdout
+    assert "valid (2 parameters, 1000 variations; replay topology" in shapewright("models", "validate", lamp).stdout
 
 
 def test_validate_says_what_is_wrong_and_where(lamp: Path, tmp_path: Path) -> None:
