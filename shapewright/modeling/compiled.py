@@ -106,9 +106,13 @@ class CompiledModel:
         """Return the values of the base model: ones."""
         return self.space.base_values()
 
-    def random_values(self, rng: np.random.Generator, count: int) -> Values:
-        """Return ``count`` settled rows, every active parameter uniform in its range (paper section 3.2)."""
-        return self.space.random_values(rng, count)
+    def random_values(self, rng: np.random.Generator, count: int, fixed: Mapping[str, float] | None = None) -> Values:
+        """Return ``count`` settled rows, every active parameter that is not fixed uniform in its range (section 3.2).
+
+        Raises:
+            ParameterError: a fixed value that the model cannot have; see :meth:`ParameterSpace.random_values`.
+        """
+        return self.space.random_values(rng, count, fixed)
 
     def settle(self, values: Values) -> Values:
         """Return the rows as they are meant: in their ranges, options whole, 1 where not active.

@@ -58,12 +58,21 @@ class ParameterSpace:
         """Return the values of the base model: ones."""
         return np.ones(len(self.parameters))
 
-    def random_values(self, rng: np.random.Generator, count: int) -> Values:
-        """Return settled rows: each active parameter uniform in its range, or among its options (section 3.2)."""
+    def random_values(self, rng: np.random.Generator, count: int, fixed: Mapping[str, float] | None = None) -> Values:
+        """Return settled rows: each active parameter uniform in its range, or among its options (section 3.2).
+
+        What is ``fixed`` by name is not drawn; where the range of a row leaves it out it is the nearest value within.
+
+        Raises:
+            ParameterError: a fixed value that :meth:`values_from_mapping` would refuse whatever the others are.
+        """
+        given = self._checked(fixed or {})
         shares = rng.random((count, len(self.parameters)))
         values = np.empty_like(shares)
         for i, low, high, active in self._bounds(values):
-            if self.parameters[i].options:
+            if i in given:
+                drawn = np.clip(given[i], low, high)
+            elif self.parameters[i].options:
                 drawn = np.minimum(low + np.floor(shares[:, i] * (high - low + 1.0)), high)
             else:
                 drawn = low + shares[:, i] * (high - low)
@@ -107,12 +116,8 @@ class ParameterSpace:
             ParameterError: an unknown name, a value that is not finite, out of its range or no option.
         """
         values = self.base_values()
-        for name, value in named.items():
-            if name not in self.columns:
-                known = ", ".join(self.columns) or "none"
-                raise ParameterError(f"the model has no parameter {name!r}; it has: {known}", where=f"values.{name}")
-            self._check_value(self.parameters[self.columns[name]], value)
-            values[self.columns[name]] = value
+        for column, value in self._checked(named).items():
+            values[column] = value
         settled = self.settle(values[None])
         for i, low, high, active in self._bounds(settled):
             parameter = self.parameters[i]
@@ -125,6 +130,14 @@ class ParameterSpace:
                 )
         row: Float[np.ndarray, " P"] = settled[0]
         return row
+
+    def _checked(self, named: Mapping[str, float]) -> dict[int, float]:
+        for name, value in named.items():
+            if name not in self.columns:
+                known = ", ".join(self.columns) or "none"
+                raise ParameterError(f"the model has no parameter {name!r}; it has: {known}", where=f"values.{name}")
+            self._check_value(self.parameters[self.columns[name]], value)
+        return {self.columns[name]: float(value) for name, value in named.items()}
 
     def _check_value(self, parameter: Parameter, value: float) -> None:
         where = f"values.{parameter.name}"
