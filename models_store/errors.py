@@ -12,11 +12,11 @@ class NotFoundError(StoreError):
 
     Args:
         what: the kind of thing, e.g. ``"mesh"``.
-        identifier: the id that was asked for.
+        identifier: the id, of a class the name, that was asked for.
     """
 
     def __init__(self, what: str, identifier: str) -> None:
-        super().__init__(f"there is no {what} with the id {identifier!r}")
+        super().__init__(f"there is no {what} with the {'name' if what == 'class' else 'id'} {identifier!r}")
         self.what = what
         self.identifier = identifier
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any, Final, Generic, TypeVar
 
-from sqlalchemy import Select, tuple_
-from sqlalchemy.orm import Session
+from sqlalchemy import Select, select, tuple_
+from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from models_store.errors import CursorError
+from models_store.text import storable
 
 MAX_LIMIT: Final = 200
 RowT = TypeVar("RowT", bound=Any)
@@ -33,8 +34,7 @@ def fetch_page(
     Raises:
         CursorError: ``cursor`` is not one of ours, or ``limit`` is not within 1..MAX_LIMIT.
     """
-    if not 1 <= limit <= MAX_LIMIT:
-        raise CursorError(f"the limit must be between 1 and {MAX_LIMIT}, got {limit}", where="limit")
+    _check_limit(limit)
     if cursor is not None:
         created_at, identifier = _decode(cursor)
         query = query.where(tuple_(table.created_at, table.id) < tuple_(created_at, identifier))
@@ -43,6 +43,36 @@ def fetch_page(
     more = len(rows) > limit
     rows = rows[:limit]
     return Page(rows, _encode(rows[-1].created_at, rows[-1].id) if more else None)
+
+
+def fetch_named_page(
+    session: Session, column: InstrumentedAttribute[str], *, limit: int = 50, cursor: str | None = None
+) -> Page[str]:
+    """Fetch one page of the different texts of a column, in order.
+
+    Raises:
+        CursorError: ``cursor`` is not one of ours, or ``limit`` is not within 1..MAX_LIMIT.
+    """
+    _check_limit(limit)
+    query = select(column).distinct().order_by(column).limit(limit + 1)
+    if cursor is not None:
+        query = query.where(column > _decode_name(cursor))
+    names = session.scalars(query).all()
+    more = len(names) > limit
+    names = names[:limit]
+    return Page(names, base64.urlsafe_b64encode(names[-1].encode()).decode() if more else None)
+
+
+def _check_limit(limit: int) -> None:
+    if not 1 <= limit <= MAX_LIMIT:
+        raise CursorError(f"the limit must be between 1 and {MAX_LIMIT}, got {limit}", where="limit")
+
+
+def _decode_name(cursor: str) -> str:
+    try:
+        return storable(base64.b64decode(cursor, altchars=b"-_", validate=True).decode())
+    except ValueError:
+        raise _foreign() from None
 
 
 def _encode(created_at: datetime, identifier: str) -> str:
@@ -57,5 +87,9 @@ def _decode(cursor: str) -> tuple[datetime, str]:
             raise ValueError(cursor)
         identifier.encode()
     except (ValueError, TypeError, binascii.Error, OverflowError, RecursionError):
-        raise CursorError("this cursor was not handed out by a list of this service", where="cursor") from None
+        raise _foreign() from None
     return created_at, identifier
+
+
+def _foreign() -> CursorError:
+    return CursorError("this cursor was not handed out by a list of this service", where="cursor")

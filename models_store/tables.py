@@ -122,10 +122,13 @@ class JobEventRow(Base):
 
 
 class ModelRow(Base):
-    """A procedural model; its id is the SHA-256 of its canonical document."""
+    """A procedural model; its id is the SHA-256 of its canonical document. Models with one ``class_name`` are a class.
+
+    ``parts`` and ``symmetry`` are null in rows from before models had them.
+    """
 
     __tablename__ = "models"
-    __table_args__ = (Index(None, "created_at", "id"),)
+    __table_args__ = (Index(None, "created_at", "id"), Index(None, "class_name", "name"))
 
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
     name: Mapped[str] = mapped_column(Text)
@@ -135,6 +138,8 @@ class ModelRow(Base):
     format_version: Mapped[int]
     operation_count: Mapped[int]
     parameters: Mapped[list[Any]]
+    parts: Mapped[list[Any] | None]
+    symmetry: Mapped[dict[str, Any] | None]
     document: Mapped[str] = mapped_column(Text)
     thumbnail_key: Mapped[str | None] = mapped_column(Text)
     created_at: Mapped[datetime]
@@ -195,7 +200,10 @@ class ClassificationRow(Base):
 
 
 class EstimationRow(Base):
-    """Which parameter values rebuild a mesh; ``result`` and ``mesh_key`` are set once."""
+    """Which parameter values rebuild a mesh; ``result`` and ``mesh_key`` are set once.
+
+    Asked for with a class, ``model_ids`` are the models of the class then, and ``model_id`` comes with the result.
+    """
 
     __tablename__ = "estimations"
     __table_args__ = (Index(None, "created_at", "id"),)
@@ -203,7 +211,9 @@ class EstimationRow(Base):
     id: Mapped[str] = mapped_column(String(32), primary_key=True)
     job_id: Mapped[str] = mapped_column(ForeignKey(JobRow.id), unique=True)
     mesh_id: Mapped[str] = mapped_column(ForeignKey(MeshRow.id), index=True)
-    model_id: Mapped[str] = mapped_column(ForeignKey(ModelRow.id), index=True)
+    model_id: Mapped[str | None] = mapped_column(ForeignKey(ModelRow.id), index=True)
+    class_name: Mapped[str | None] = mapped_column(Text)
+    model_ids: Mapped[list[str] | None]
     settings: Mapped[dict[str, Any]]
     result: Mapped[dict[str, Any] | None]
     mesh_key: Mapped[str | None] = mapped_column(Text)

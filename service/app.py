@@ -17,6 +17,7 @@ from service.logs import configure_logs
 from service.openapi import install_openapi
 from service.request_context import RequestContextMiddleware
 from service.routes import (
+    classes,
     classifications,
     classifiers,
     dashboard,
@@ -61,7 +62,7 @@ def create_app(settings: ServiceSettings | None = None) -> FastAPI:
     app.state.services = services
     install_handlers(app)
     install_openapi(app)
-    parts = (models, meshes, classifiers, classifications, estimations, jobs, health, metrics)
+    parts = (models, classes, meshes, classifiers, classifications, estimations, jobs, health, metrics)
     for part in parts:
         app.include_router(part.router)
     app.include_router(dashboard.router)  # last: it takes any name at the top

@@ -3,12 +3,16 @@
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
+from typing import Final
 
 import numpy as np
 
-from shapewright.errors import ModelError
+from shapewright.errors import MeshError, ModelError
 from shapewright.glb import GlbWriter
 from shapewright.modeling import CompiledModel, ProceduralModel
+
+_LARGEST: Final = np.finfo(np.float32).max
+"""GLB files hold float32."""
 
 
 class InstanceGenerator:
@@ -27,21 +31,18 @@ class InstanceGenerator:
         self.compiled: CompiledModel = model.compile()
         self._corners = sum(map(len, self.compiled.control_faces))
         self._max_corners = max_corners
-        self._writers: dict[int, GlbWriter] = {}
-        self._lock = threading.Lock()
 
     def values(self, named: Mapping[str, float], seed: int | None) -> dict[str, float]:
-        """The x of every parameter: given by name, else random if there is a seed, else 1.
+        """The x of every parameter: given by name, else random if there is a seed, else 1; settled.
 
         Raises:
-            ParameterError: an unknown name or a value out of its range.
+            ParameterError: an unknown name, a value out of its range, or no option.
         """
-        row = self.compiled.values_from_mapping(named)
-        names = [parameter.name for parameter in self.compiled.model.parameters]
-        if seed is not None:
-            random = self.compiled.random_values(np.random.default_rng(seed), 1)[0]
-            row = np.array([row[i] if name in named else random[i] for i, name in enumerate(names)])
-        return dict(zip(names, row.tolist(), strict=True))
+        if seed is None:
+            row = self.compiled.values_from_mapping(named)
+        else:
+            row = self.compiled.random_values(np.random.default_rng(seed), 1, named)[0]
+        return dict(zip(self.compiled.space.columns, row.tolist(), strict=True))
 
     def glb(self, values: Mapping[str, float], steps: int) -> bytes:
         """The instance of these values after ``steps`` subdivisions.
@@ -49,11 +50,14 @@ class InstanceGenerator:
         Raises:
             ModelError: the surface would be too fine, or is not finite.
         """
-        writer = self._writer(steps)
-        points = self.compiled.surface_points(np.array([list(values.values())], dtype=np.float64), steps)[0]
-        if not np.isfinite(points.astype(np.float32)).all():
+        self._check_size(steps)
+        try:
+            instance = self.compiled.instance(np.array(list(values.values()), dtype=np.float64), steps)
+        except MeshError:
+            instance = None
+        if instance is None or not np.abs(instance.vertices).max() <= _LARGEST:
             raise ModelError("with these values the surface is not finite", where="values")
-        return writer.write(points)
+        return GlbWriter(instance.faces).write(instance.vertices)
 
     def check_base_instance(self) -> None:
         """Generate the base model once.
@@ -61,25 +65,20 @@ class InstanceGenerator:
         Raises:
             ModelError: it is too fine, not finite, or has no extent.
         """
-        self._writer(2)
+        self._check_size(2)
         points = self.compiled.surface_points(self.compiled.base_values()[None], 2)[0]
         if not np.isfinite(points.astype(np.float32)).all():
             raise ModelError("the base model is not finite", where="operations")
         if not np.ptp(points, axis=0).max() > 0:
             raise ModelError("the base model has no extent", where="operations")
 
-    def _writer(self, steps: int) -> GlbWriter:
-        # One thread at a time: the compiled model builds its subdivision matrices when they are first needed.
-        with self._lock:
-            if steps not in self._writers:
-                corners = self._corners * 4 ** max(steps - 1, 0)
-                if corners > self._max_corners:
-                    raise ModelError(
-                        f"{steps} subdivisions make about {corners} face corners; {self._max_corners} are the most",
-                        where="subdivision_steps",
-                    )
-                self._writers[steps] = GlbWriter(self.compiled.surface_triangles(steps))
-            return self._writers[steps]
+    def _check_size(self, steps: int) -> None:
+        corners = self._corners * 4 ** max(steps - 1, 0)
+        if corners > self._max_corners:
+            raise ModelError(
+                f"{steps} subdivisions make about {corners} face corners; {self._max_corners} are the most",
+                where="subdivision_steps",
+            )
 
 
 class CompiledModels:

@@ -46,7 +46,10 @@ class LiveService:
         return self.client.post("/v1/meshes", files={"file": (file_name, data)})
 
     def add_model(self, class_name: str = "box", height: float = 1.0) -> dict[str, Any]:
-        response = self.client.post("/v1/models", json=box(class_name, height))
+        return self.add_document(box(class_name, height))
+
+    def add_document(self, document: Any) -> dict[str, Any]:
+        response = self.client.post("/v1/models", json=document)
         assert response.status_code in (200, 201), response.text
         return response.json()
 

@@ -7,19 +7,22 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from models_store.catalog.meshes import get_mesh
-from models_store.catalog.models import get_model
+from models_store.catalog.models import get_model, models_of_class
 from models_store.catalog.rows import get_row
+from models_store.errors import StoreError
 from models_store.jobs import JobKind, create_job, new_id
 from models_store.paging import Page, fetch_page
 from models_store.tables import EstimationRow
+from models_store.text import storable
 
 
 def request_estimation(
     session: Session,
     mesh_id: str,
-    model_id: str,
+    model_id: str | None,
     settings: dict[str, Any],
     *,
+    class_name: str | None = None,
     now: datetime,
     max_attempts: int = 3,
 ) -> EstimationRow:
@@ -28,16 +31,24 @@ def request_estimation(
     Args:
         session: a writing session.
         mesh_id: the query.
-        model_id: the procedural model that shall rebuild it.
+        model_id: the procedural model that shall rebuild it; ``None`` leaves the choice to the estimation.
         settings: fields of :class:`shapewright.estimation.EstimationSettings` that differ from the default.
+        class_name: without a model, the class whose models (as they are now) are tried.
         now: the time, with a zone.
         max_attempts: of the job.
 
     Raises:
-        NotFoundError: the mesh or the model is not there.
+        NotFoundError: the mesh, the model or the class is not there.
+        StoreError: neither a model nor a class, or both.
     """
+    if (model_id is None) == (class_name is None):
+        raise StoreError("an estimation is asked for with either a model or a class", where="model_id")
     get_mesh(session, mesh_id)
-    get_model(session, model_id)
+    model_ids = None
+    if model_id is not None:
+        get_model(session, model_id)
+    elif class_name is not None:
+        model_ids = [model.id for model in models_of_class(session, class_name)]
     identifier = new_id()
     payload = {"estimation_id": identifier}
     row = EstimationRow(
@@ -45,6 +56,8 @@ def request_estimation(
         job=create_job(session, JobKind.ESTIMATE, identifier, payload, now=now, max_attempts=max_attempts),
         mesh_id=mesh_id,
         model_id=model_id,
+        class_name=None if class_name is None else storable(class_name),
+        model_ids=model_ids,
         settings=settings,
         created_at=now,
     )
@@ -53,9 +66,13 @@ def request_estimation(
     return row
 
 
-def record_estimation(session: Session, identifier: str, result: dict[str, Any], mesh_key: str | None) -> None:
-    """Write the parameter values; in the transaction that ends the job."""
+def record_estimation(
+    session: Session, identifier: str, result: dict[str, Any], mesh_key: str | None, model_id: str | None = None
+) -> None:
+    """Write the parameter values, and for a class which model they belong to; in the transaction that ends the job."""
     row = get_estimation(session, identifier)
+    if model_id is not None:
+        row.model_id = model_id
     row.result = result
     row.mesh_key = mesh_key
 

@@ -25,8 +25,13 @@ router = APIRouter(prefix="/v1/estimations", tags=["estimations"])
     responses=problems(413, 415, 422, 503, 507),
 )
 def create_estimation(services: ServicesDep, response: Response, after: BackgroundTasks, body: EstimationIn) -> Any:
-    """Estimate the parameter values with which a model rebuilds a mesh."""
+    """Estimate the parameter values with which a model, or the best one of a class, rebuilds a mesh."""
     settings = body.settings.checked()
+    if (body.model_id is None) == (body.class_name is None):
+        detail = "name either a model or a class"
+        raise ProblemError(
+            Problem(422, "request-invalid", "The request does not fit the schema", detail, where="model_id")
+        )
     try:
         with services.database.writing() as session:
             row = catalog.request_estimation(
@@ -34,11 +39,12 @@ def create_estimation(services: ServicesDep, response: Response, after: Backgrou
                 body.mesh_id,
                 body.model_id,
                 settings,
+                class_name=body.class_name,
                 now=now(),
                 max_attempts=services.settings.max_attempts,
             )
     except NotFoundError as error:
-        raise reference_error(error, f"{error.what}_id") from None
+        raise reference_error(error, "class_name" if error.what == "class" else f"{error.what}_id") from None
     after.add_task(services.announce, row.job)
     response.headers["Location"] = f"/v1/jobs/{row.job_id}"
     return AcceptedOut.from_row(row.job)

@@ -2,10 +2,10 @@
 
 import json
 import time
-from typing import Any
+from typing import Annotated, Any
 
 import anyio
-from fastapi import APIRouter, BackgroundTasks, Depends, Request, Response
+from fastapi import APIRouter, BackgroundTasks, Depends, Query, Request, Response
 
 from models_store import catalog
 from models_store.tables import JobRow, ModelRow
@@ -70,10 +70,15 @@ def _add(services: Services, body: bytes) -> tuple[ModelRow, JobRow | None]:
 
 
 @router.get("", response_model=ModelPageOut, responses=problems(422))
-def list_models(services: ServicesDep, limit: LimitQuery = 50, cursor: CursorQuery = None) -> Any:
+def list_models(
+    services: ServicesDep,
+    class_name: Annotated[str | None, Query(max_length=200, description="Only the models of this class.")] = None,
+    limit: LimitQuery = 50,
+    cursor: CursorQuery = None,
+) -> Any:
     """List the models, newest first."""
     with services.database.reading() as session:
-        page = catalog.list_models(session, limit=limit, cursor=cursor)
+        page = catalog.list_models(session, class_name=class_name, limit=limit, cursor=cursor)
     return ModelPageOut(items=[ModelOut.from_row(row) for row in page.items], next_cursor=page.next_cursor)
 
 

@@ -53,23 +53,28 @@ class EstimationSettingsIn(InBody):
 
 
 class EstimationIn(InBody):
-    """A mesh to rebuild with a model."""
+    """A mesh to rebuild with a model, or with the best of a class's models."""
 
     mesh_id: Identifier
-    model_id: Identifier
+    model_id: Identifier | None = Field(default=None, description="A model; leave it out to name a class instead.")
+    class_name: Annotated[str, Field(min_length=1, max_length=200)] | None = Field(
+        default=None, description="A class; its models are all tried, and the result says which one fits."
+    )
     settings: EstimationSettingsIn = Field(default_factory=EstimationSettingsIn)
 
 
 class ParameterEstimateOut(OutBody):
-    """A parameter's estimate; `value` is x, shown as `x * base_value`."""
+    """A parameter's estimate; `value` is x, shown as `x * base_value` or by the name of its option."""
 
     name: str
     label: str
     unit: str | None
     value: float
     base_value: float | None
-    minimum: float
-    maximum: float
+    minimum: float = Field(description="Smallest x, given the other values.")
+    maximum: float = Field(description="Largest x, given the other values.")
+    active: bool = Field(default=True, description="False if another value makes this one meaningless; x is 1 then.")
+    option: str | None = Field(default=None, description="Name of the option, of a choice or switch.")
 
 
 class DistancesOut(OutBody):
@@ -100,6 +105,15 @@ class StageOut(OutBody):
     complete: bool = Field(description="False if it was cancelled in the middle.")
 
 
+class ModelTriedOut(OutBody):
+    """How near a model of the class came."""
+
+    model_id: str
+    model_name: str
+    panorama: float = Field(description="Smallest panorama distance of its random instances to the query.")
+    distances: DistancesOut | None = Field(description="Of its estimation; null if it was not among the nearest.")
+
+
 class EstimationResultOut(OutBody):
     """The answer."""
 
@@ -111,6 +125,9 @@ class EstimationResultOut(OutBody):
     stages: list[StageOut]
     pose: PoseOut
     seconds: float
+    models_tried: list[ModelTriedOut] = Field(
+        default=[], description="Of an estimation for a class: all of its models, nearest first."
+    )
 
 
 class EstimationOut(OutBody):
@@ -119,7 +136,9 @@ class EstimationOut(OutBody):
     id: str
     state: JobState
     mesh_id: str
-    model_id: str
+    model_id: str | None = Field(description="The model; of an estimation for a class null until it is found.")
+    class_name: str | None = Field(description="The class that was asked for; null if a model was.")
+    model_ids: list[str] = Field(description="The models that are tried.")
     settings: dict[str, Any]
     result: EstimationResultOut | None
     mesh_url: str | None = Field(description="The fitted mesh as GLB, in the query's coordinates.")
@@ -135,6 +154,8 @@ class EstimationOut(OutBody):
             state=row.job.state,
             mesh_id=row.mesh_id,
             model_id=row.model_id,
+            class_name=row.class_name,
+            model_ids=[row.model_id] if row.model_ids is None and row.model_id is not None else row.model_ids or [],
             settings=row.settings,
             result=result,
             mesh_url=f"/v1/estimations/{row.id}/mesh" if row.mesh_key else None,

@@ -36,7 +36,11 @@ class Distances:
 
 @dataclass(frozen=True)
 class ParameterEstimate:
-    """An estimated parameter. ``value`` is x (1 is the base model); with a ``base_value`` people read x times it."""
+    """An estimated parameter. ``value`` is x (1 is the base model); with a ``base_value`` people read x times it.
+
+    The range is the one that the other values leave. ``option`` is the name of a choice's value. A parameter that is not
+    ``active`` means nothing beside the other values, and is 1.
+    """
 
     name: str
     label: str
@@ -45,6 +49,8 @@ class ParameterEstimate:
     base_value: float | None
     minimum: float
     maximum: float
+    active: bool = True
+    option: str | None = None
 
     @property
     def displayed_value(self) -> float:

@@ -10,10 +10,12 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
+from chair_model import armchair
 from service_support import GLB, LiveService, box, problem, running, service, shared_service
 
 from models_store import catalog
 from service.compiled_models import CompiledModels, InstanceGenerator
+from shapewright.mesh import TriangleMesh
 from shapewright.mesh_file import parse_mesh
 from shapewright.modeling import ProceduralModel
 
@@ -39,7 +41,11 @@ def test_a_model_is_stored_once(service: LiveService) -> None:
         "minimum": 0.5,
         "maximum": 2.0,
         "default": 1.0,
+        "options": [],
+        "active_when": [],
+        "limits": [],
     }
+    assert (model["parts"], model["symmetry"]) == ([], {"mirrors": [], "axis": None, "order": 1})
     assert model["operation_count"] == len(document["operations"])
     assert model["thumbnail_url"] is None
     # the same content in another spelling is the same model, and one thumbnail is enough
@@ -108,6 +114,79 @@ def test_a_seed_makes_a_variation_that_can_be_repeated(shared_service: LiveServi
         fixed = instance(shared_service, model["id"], seed=seed, values={"neck_size": 1.25})
         assert json.loads(fixed.headers["x-shapewright-values"]) == {**values, "neck_size": 1.25}
     assert len(seen) == 5
+
+
+def test_a_model_tells_what_depends_on_what(service: LiveService) -> None:
+    model = service.add_document(json.loads(armchair().to_json()))
+    back, armrests, leg, arm, ring = model["parameters"]
+    assert [option["name"] for option in back["options"]] == ["low back", "high back", "no back"]
+    assert [option["value"] for option in back["options"]] == [1.0, 2.0, 3.0]
+    assert (armrests["minimum"], armrests["maximum"], armrests["options"][1]["value"]) == (0.0, 1.0, 1.0)
+    with_armrests = [{"parameter": "armrests", "minimum": 1.0, "maximum": 1.0}]
+    assert (leg["active_when"], arm["active_when"]) == ([], with_armrests)
+    assert ring["limits"] == [{"bound": "maximum", "parameter": "leg_length", "offset": 0.25, "factor": 0.75}]
+    assert model["parts"][2] == {"name": "armrests", "present_when": with_armrests}
+    assert model["symmetry"] == {"mirrors": ["y"], "axis": None, "order": 1}
+
+
+def test_values_are_settled_before_an_instance_is_made(shared_service: LiveService) -> None:
+    model = shared_service.add_document(json.loads(armchair().to_json()))
+    compiled = armchair().compile()
+
+    def made(**body: Any) -> tuple[dict[str, float], TriangleMesh]:
+        response = instance(shared_service, model["id"], **body)
+        assert response.status_code == 200, response.text
+        return json.loads(response.headers["x-shapewright-values"]), parse_mesh(response.content, "glb")
+
+    values, mesh = made(values={"armrests": 0, "arm_height": 1.7, "back": 3})
+    assert (values["arm_height"], values["armrests"], values["back"]) == (1.0, 0.0, 3.0)
+    alone = compiled.instance(np.array(list(values.values())))
+    np.testing.assert_allclose(mesh.triangles, alone.triangles, atol=1e-6)
+    assert len(mesh.faces) < len(compiled.surface_triangles())
+    assert made(values={"leg_length": 0.5})[0]["ring_height"] == 0.625  # what is not named follows
+    for seed in range(8):
+        values, _ = made(seed=seed, values={"armrests": 1, "ring_height": 1.4})
+        np.testing.assert_array_equal(compiled.settle(np.array([list(values.values())]))[0], list(values.values()))
+        assert values["armrests"] == 1.0
+        assert values["ring_height"] == pytest.approx(min(1.4, 0.25 + 0.75 * values["leg_length"]))
+
+
+@pytest.mark.parametrize(
+    ("values", "where", "says"),
+    [
+        ({"back": 1.5}, "values.back", "2 (high back)"),
+        ({"back": 4}, "values.back", "[1, 3]"),
+        ({"leg_length": 0.6, "ring_height": 1.0}, "values.ring_height", "[0.2, 0.7], given leg_length"),
+    ],
+)
+def test_a_value_that_others_shut_out_is_refused(
+    shared_service: LiveService, values: dict[str, float], where: str, says: str
+) -> None:
+    model = shared_service.add_document(json.loads(armchair().to_json()))
+    refusal = problem(instance(shared_service, model["id"], values=values), 422, where)
+    assert says in refusal["detail"]
+    assert refusal["type"].endswith(":values-invalid")
+
+
+def test_classes_are_sets_of_models(service: LiveService) -> None:
+    def classes(**query: Any) -> Any:
+        return service.client.get("/v1/classes", params=query).json()
+
+    assert classes() == {"items": [], "next_cursor": None}
+    old, stool, crate = service.add_model("stool"), service.add_model("stool", height=2.0), service.add_model("crate")
+    chair = service.add_document(json.loads(armchair().to_json()))
+    found = classes()["items"]
+    assert [(item["name"], [model["id"] for model in item["models"]]) for item in found] == [
+        ("chair", [chair["id"]]),
+        ("crate", [crate["id"]]),
+        ("stool", [stool["id"]]),  # of two versions of one name the newer
+    ]
+    first = classes(limit=2)
+    assert [item["name"] for item in first["items"]] == ["chair", "crate"]
+    assert classes(limit=2, cursor=first["next_cursor"]) == {"items": found[2:], "next_cursor": None}
+    of_class = service.client.get("/v1/models", params={"class_name": "stool"}).json()["items"]
+    assert {model["id"] for model in of_class} == {old["id"], stool["id"]}
+    problem(service.client.get("/v1/classes", params={"cursor": "?"}), 422, "cursor")
 
 
 JSON = {"Content-Type": "application/json"}

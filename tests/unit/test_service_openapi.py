@@ -65,7 +65,7 @@ def test_an_estimation_of_the_library_fits_the_answer() -> None:
     parameter = ParameterEstimate("height", "height", "cm", 1.5, 45.0, 0.5, 2.0)
     stage = Stage("panorama", values, pose, distances)
     estimation = Estimation(1, values, (parameter,), pose, distances, (stage,), mesh)
-    document = {**json.loads(json.dumps(estimation.to_dict())), "seconds": 1.0}
+    document = {**json.loads(json.dumps(estimation.to_dict())), "seconds": 1.0, "models_tried": []}
     assert EstimationResultOut.model_validate(document).model_dump() == document
 
 

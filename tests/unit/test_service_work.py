@@ -8,6 +8,7 @@ from service_support import (
     GLB,
     NOWHERE,
     LiveService,
+    box,
     eventually,
     problem,
     running,
@@ -141,12 +142,15 @@ def estimation_result() -> dict[str, Any]:
                 "base_value": 40.0,
                 "minimum": 0.5,
                 "maximum": 2.0,
+                "active": True,
+                "option": None,
             }
         ],
         "pose": pose,
         "distances": distances,
         "stages": [{"name": "panorama", **stage}, {"name": "zbuffer", **stage, "layer": 3}],
         "seconds": 12.5,
+        "models_tried": [],
     }
 
 
@@ -177,10 +181,39 @@ def test_an_estimation_is_accepted_and_its_answer_comes(service: LiveService) ->
     assert service.client.get("/v1/estimations").json()["items"] == [done]
 
 
+def test_an_estimation_for_a_class_says_which_model_it_found(service: LiveService) -> None:
+    mesh = service.upload(tetrahedron()).json()
+    models = [service.add_document({**box("box"), "name": name}) for name in ("flat_box", "tall_box")]
+    body = {"mesh_id": mesh["id"], "class_name": "box"}
+    accepted = service.client.post("/v1/estimations", json=body).json()
+    waiting = service.client.get(accepted["url"]).json()
+    assert (waiting["model_id"], waiting["class_name"]) == (None, "box")
+    assert waiting["model_ids"] == [model["id"] for model in models]
+    result = estimation_result() | {
+        "models_tried": [
+            {"model_id": models[1]["id"], "model_name": "tall_box", "panorama": 0.25, "distances": None},
+            {"model_id": models[0]["id"], "model_name": "flat_box", "panorama": 0.5, "distances": None},
+        ]
+    }
+    record = partial(
+        catalog.record_estimation,
+        identifier=accepted["id"],
+        result=result,
+        mesh_key=None,
+        model_id=models[1]["id"],
+    )
+    service.work(accepted["job"]["id"], record)
+    done = service.client.get(accepted["url"]).json()
+    assert (done["model_id"], done["result"]) == (models[1]["id"], result)
+
+
 @pytest.mark.parametrize(
     ("change", "where"),
     [
         ({"mesh_id": "0" * 64}, "mesh_id"),
+        ({"model_id": None}, "model_id"),
+        ({"class_name": "box"}, "model_id"),  # both a model and a class
+        ({"model_id": None, "class_name": "no such class"}, "class_name"),
         ({"model_id": "0" * 64}, "model_id"),
         ({"model_id": "../x"}, "model_id"),
         ({"mesh_id": None}, "mesh_id"),

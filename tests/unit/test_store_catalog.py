@@ -52,9 +52,10 @@ def test_the_same_model_twice_is_one_model(database: Database, clock: FakeClock)
     assert second.parameters == [
         {
             "name": "height", "label": "height", "unit": None, "base_value": None, "minimum": 0.3, "maximum": 2.0,
-            "default": 1.0,
+            "default": 1.0, "options": [], "active_when": [], "limits": [],
         }
     ]  # fmt: skip
+    assert (second.parts, second.symmetry) == ([], {"mirrors": [], "axis": None, "order": 1})
     assert second.document == brick().to_json()
 
 

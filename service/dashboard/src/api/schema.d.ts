@@ -88,6 +88,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/v1/classes": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Classes
+         * @description List the classes by name, each with its models.
+         */
+        get: operations["list_classes"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/v1/meshes": {
         parameters: {
             query?: never;
@@ -277,7 +297,7 @@ export interface paths {
         put?: never;
         /**
          * Create Estimation
-         * @description Estimate the parameter values with which a model rebuilds a mesh.
+         * @description Estimate the parameter values with which a model, or the best one of a class, rebuilds a mesh.
          */
         post: operations["create_estimation"];
         delete?: never;
@@ -493,6 +513,32 @@ export interface components {
             file: string;
         };
         /**
+         * ClassOut
+         * @description A class of objects: the set of models that share its name.
+         */
+        ClassOut: {
+            /** Name */
+            name: string;
+            /**
+             * Models
+             * @description By name; of several versions of a model the newest.
+             */
+            models: components["schemas"]["ModelOut"][];
+        };
+        /**
+         * ClassPageOut
+         * @description A page of classes, by name.
+         */
+        ClassPageOut: {
+            /** Items */
+            items: components["schemas"]["ClassOut"][];
+            /**
+             * Next Cursor
+             * @description Give it as `cursor` to read on; null on the last page.
+             */
+            next_cursor: string | null;
+        };
+        /**
          * ClassProbabilityOut
          * @description The probability of one class.
          */
@@ -652,6 +698,21 @@ export interface components {
             next_cursor: string | null;
         };
         /**
+         * ConditionOut
+         * @description Holds where x of a parameter lies in a range; of a parameter that is not active it does not hold.
+         */
+        ConditionOut: {
+            /**
+             * Parameter
+             * @description A parameter that comes before.
+             */
+            parameter: string;
+            /** Minimum */
+            minimum: number;
+            /** Maximum */
+            maximum: number;
+        };
+        /**
          * DistancesOut
          * @description How far query and fitted mesh are apart; null where a stage did not measure it.
          */
@@ -667,13 +728,21 @@ export interface components {
         };
         /**
          * EstimationIn
-         * @description A mesh to rebuild with a model.
+         * @description A mesh to rebuild with a model, or with the best of a class's models.
          */
         EstimationIn: {
             /** Mesh Id */
             mesh_id: string;
-            /** Model Id */
-            model_id: string;
+            /**
+             * Model Id
+             * @description A model; leave it out to name a class instead.
+             */
+            model_id?: string | null;
+            /**
+             * Class Name
+             * @description A class; its models are all tried, and the result says which one fits.
+             */
+            class_name?: string | null;
             settings?: components["schemas"]["EstimationSettingsIn"];
         };
         /**
@@ -686,8 +755,21 @@ export interface components {
             state: components["schemas"]["JobState"];
             /** Mesh Id */
             mesh_id: string;
-            /** Model Id */
-            model_id: string;
+            /**
+             * Model Id
+             * @description The model; of an estimation for a class null until it is found.
+             */
+            model_id: string | null;
+            /**
+             * Class Name
+             * @description The class that was asked for; null if a model was.
+             */
+            class_name: string | null;
+            /**
+             * Model Ids
+             * @description The models that are tried.
+             */
+            model_ids: string[];
             /** Settings */
             settings: {
                 [key: string]: unknown;
@@ -747,6 +829,12 @@ export interface components {
             pose: components["schemas"]["PoseOut"];
             /** Seconds */
             seconds: number;
+            /**
+             * Models Tried
+             * @description Of an estimation for a class: all of its models, nearest first.
+             * @default []
+             */
+            models_tried: components["schemas"]["ModelTriedOut"][];
         };
         /**
          * EstimationSettingsIn
@@ -810,7 +898,7 @@ export interface components {
         InstanceIn: {
             /**
              * Values
-             * @description x by parameter name; what is missing is 1, or random if there is a `seed`.
+             * @description x by parameter name; what is missing is 1 (or as near as its range comes), or random if there is a `seed`. Values of parameters that are not active make no difference.
              */
             values?: {
                 [key: string]: number;
@@ -916,6 +1004,26 @@ export interface components {
          */
         JobState: "queued" | "running" | "succeeded" | "failed" | "cancelled";
         /**
+         * LimitOut
+         * @description A range that depends on another value: its end is at `offset + factor * x` of another parameter.
+         */
+        LimitOut: {
+            /**
+             * Bound
+             * @enum {string}
+             */
+            bound: "minimum" | "maximum";
+            /**
+             * Parameter
+             * @description A parameter that comes before.
+             */
+            parameter: string;
+            /** Offset */
+            offset: number;
+            /** Factor */
+            factor: number;
+        };
+        /**
          * MeshOut
          * @description An uploaded mesh.
          */
@@ -997,6 +1105,12 @@ export interface components {
             /** Parameters */
             parameters: components["schemas"]["ParameterOut"][];
             /**
+             * Parts
+             * @description Optional parts.
+             */
+            parts: components["schemas"]["PartOut"][];
+            symmetry: components["schemas"]["SymmetryOut"];
+            /**
              * Thumbnail Url
              * @description PNG; null until it is rendered.
              */
@@ -1042,6 +1156,12 @@ export interface components {
             /** Parameters */
             parameters: components["schemas"]["ParameterOut"][];
             /**
+             * Parts
+             * @description Optional parts.
+             */
+            parts: components["schemas"]["PartOut"][];
+            symmetry: components["schemas"]["SymmetryOut"];
+            /**
              * Thumbnail Url
              * @description PNG; null until it is rendered.
              */
@@ -1066,8 +1186,38 @@ export interface components {
             next_cursor: string | null;
         };
         /**
+         * ModelTriedOut
+         * @description How near a model of the class came.
+         */
+        ModelTriedOut: {
+            /** Model Id */
+            model_id: string;
+            /** Model Name */
+            model_name: string;
+            /**
+             * Panorama
+             * @description Smallest panorama distance of its random instances to the query.
+             */
+            panorama: number;
+            /** @description Of its estimation; null if it was not among the nearest. */
+            distances: components["schemas"]["DistancesOut"] | null;
+        };
+        /**
+         * OptionOut
+         * @description What a value of a choice or switch means.
+         */
+        OptionOut: {
+            /**
+             * Value
+             * @description A whole number: x.
+             */
+            value: number;
+            /** Name */
+            name: string;
+        };
+        /**
          * ParameterEstimateOut
-         * @description A parameter's estimate; `value` is x, shown as `x * base_value`.
+         * @description A parameter's estimate; `value` is x, shown as `x * base_value` or by the name of its option.
          */
         ParameterEstimateOut: {
             /** Name */
@@ -1080,14 +1230,31 @@ export interface components {
             value: number;
             /** Base Value */
             base_value: number | null;
-            /** Minimum */
+            /**
+             * Minimum
+             * @description Smallest x, given the other values.
+             */
             minimum: number;
-            /** Maximum */
+            /**
+             * Maximum
+             * @description Largest x, given the other values.
+             */
             maximum: number;
+            /**
+             * Active
+             * @description False if another value makes this one meaningless; x is 1 then.
+             * @default true
+             */
+            active: boolean;
+            /**
+             * Option
+             * @description Name of the option, of a choice or switch.
+             */
+            option: string | null;
         };
         /**
          * ParameterOut
-         * @description A named parameter; the displayed value is `x * base_value`.
+         * @description A named parameter; the displayed value is `x * base_value`, or the name of an option.
          */
         ParameterOut: {
             /** Name */
@@ -1116,6 +1283,37 @@ export interface components {
              * @description x of the base model: always 1.
              */
             default: number;
+            /**
+             * Options
+             * @description Of a choice or switch; empty if x is a measure.
+             * @default []
+             */
+            options: components["schemas"]["OptionOut"][];
+            /**
+             * Active When
+             * @description Conditions that must all hold, else x is 1 and changes nothing.
+             * @default []
+             */
+            active_when: components["schemas"]["ConditionOut"][];
+            /**
+             * Limits
+             * @description What narrows the range of x further.
+             * @default []
+             */
+            limits: components["schemas"]["LimitOut"][];
+        };
+        /**
+         * PartOut
+         * @description An optional part of the model.
+         */
+        PartOut: {
+            /** Name */
+            name: string;
+            /**
+             * Present When
+             * @description Conditions that must all hold, else it is left out.
+             */
+            present_when: components["schemas"]["ConditionOut"][];
         };
         /**
          * PoseOut
@@ -1183,11 +1381,17 @@ export interface components {
             /** @constant */
             format: "shapewright-procedural-model";
             /** @constant */
-            version: 1;
+            version: 2;
             name: string;
             class: string;
             description?: string;
             closed?: boolean;
+            symmetry?: {
+                mirrors?: ("x" | "y" | "z")[];
+                axis?: ("x" | "y" | "z") | null;
+                order?: number;
+                apart?: string[];
+            };
             operations: [
                 {
                     /** @constant */
@@ -1210,6 +1414,7 @@ export interface components {
                                 turn: "x" | "y" | "z";
                                 angle_deg: number;
                             })[];
+                            pivot?: string[];
                         } & {
                             image?: unknown;
                         }
@@ -1228,6 +1433,26 @@ export interface components {
                 targets: {
                     operation: number;
                     mode: string;
+                }[];
+                options?: string[];
+                active_when?: {
+                    parameter: string;
+                    range: number[];
+                }[];
+                limits?: {
+                    /** @enum {unknown} */
+                    bound: "minimum" | "maximum";
+                    parameter: string;
+                    offset: number;
+                    factor: number;
+                }[];
+            }[];
+            parts?: {
+                name: string;
+                components: string[];
+                present_when: {
+                    parameter: string;
+                    range: number[];
                 }[];
             }[];
         };
@@ -1269,6 +1494,29 @@ export interface components {
              * @description False if it was cancelled in the middle.
              */
             complete: boolean;
+        };
+        /**
+         * SymmetryOut
+         * @description What leaves every instance as it is.
+         */
+        SymmetryOut: {
+            /**
+             * Mirrors
+             * @description Normals of mirror planes.
+             * @default []
+             */
+            mirrors: ("x" | "y" | "z")[];
+            /**
+             * Axis
+             * @description It can be turned about this axis ...
+             */
+            axis: ("x" | "y" | "z") | null;
+            /**
+             * Order
+             * @description ... by 360 degrees / order.
+             * @default 1
+             */
+            order: number;
         };
         /**
          * TrainingSettingsIn
@@ -1342,6 +1590,8 @@ export interface operations {
     list_models: {
         parameters: {
             query?: {
+                /** @description Only the models of this class. */
+                class_name?: string | null;
                 /** @description Most items of a page. */
                 limit?: number;
                 /** @description `next_cursor` of the page before; none for the first page. */
@@ -1590,6 +1840,40 @@ export interface operations {
                 };
                 content: {
                     "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    list_classes: {
+        parameters: {
+            query?: {
+                /** @description Most items of a page. */
+                limit?: number;
+                /** @description `next_cursor` of the page before; none for the first page. */
+                cursor?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ClassPageOut"];
                 };
             };
             /** @description The request is not valid; `where` says the place. */

@@ -35,7 +35,7 @@ export function EstimationPanel({ meshId, foundClass, estimation, estimations }:
   const modelId = chosenModel ?? defaultModel(models.data, foundClass)?.id ?? null;
   const sampleCount = Number(samples);
   const samplesValid = Number.isInteger(sampleCount) && sampleCount >= 1 && sampleCount <= MOST_SAMPLES;
-  const modelOf = (id: string) => models.data?.find((model) => model.id === id);
+  const modelOf = (id: string | null) => models.data?.find((model) => model.id === id);
 
   const start = () => {
     if (modelId === null || !samplesValid) return;
