@@ -12,11 +12,12 @@ import numpy as np
 from models_store.library.lathe import Ring
 from models_store.library.loft import ORIGIN, Loft, Section, Vector, move
 from shapewright.modeling import Element, Recorder, Target
-from shapewright.modeling.elements import Axis, Image
+from shapewright.modeling.elements import Axis
 
 Direction = Literal["+x", "-x", "+y", "-y", "+z", "-z"]
 Crease = Literal["all", "long", "ends"]
 _ACROSS: dict[Axis, tuple[str, str]] = {"x": ("v", "z"), "y": ("u", "z"), "z": ("u", "v")}
+_AXES: dict[str, Axis] = {"x": "x", "y": "y", "z": "z"}
 _TOLERANCE = 1e-9
 
 
@@ -44,7 +45,7 @@ def beam(
     anchors = (anchors,) if isinstance(anchors, Target) else tuple(anchors)
     anchors = anchors or (Target((), "world"),)
     images = tuple(anchor.image for anchor in anchors)
-    axis: Axis = {"x": "x", "y": "y", "z": "z"}[direction[1]]  # type: ignore[assignment]
+    axis: Axis = _AXES[direction[1]]
     forward = direction[0] == "+"
     sign = 1.0 if forward else -1.0
     first, second = sections[0], sections[1]

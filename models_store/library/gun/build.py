@@ -10,7 +10,7 @@ from models_store.library.author import publish
 from models_store.library.beam import at, beam, lower, upper
 from models_store.library.gun.parts import components, post, trigger, trigger_guard, tube, whole
 from models_store.library.loft import Loft, Section
-from shapewright.modeling import Mirror, ProceduralModel, Recorder, Target, when
+from shapewright.modeling import Component, Mirror, ProceduralModel, Recorder, Target, when
 
 SLIDE_LENGTH, SLIDE_HEIGHT, SLIDE_WIDTH = 0.19, 0.027, 0.025
 DUST_COVER = 0.065
@@ -29,10 +29,10 @@ def build() -> ProceduralModel:
     slide = _slide(recorder)
     frame = _frame(recorder, slide)
     grip = _grip(recorder, frame)
-    barrel = _barrel(recorder, slide)
+    barrels = _barrels(recorder, slide)
     details = _details(recorder, slide, frame)
-    recorder.scale(whole(slide, frame, grip, barrel, *details), 1.0, "v", size="thickness")
-    recorder.symmetry(mirrors="y")
+    recorder.scale(whole(slide, frame, grip, *barrels, *details), 1.0, "v", size="thickness")
+    recorder.symmetry(mirrors=("y",))
     return recorder.build()
 
 
@@ -45,10 +45,18 @@ def _declare(recorder: Recorder) -> None:
     recorder.parameter("slide_length", "Slide length", 0.62, 1.3, unit="m", base_value=SLIDE_LENGTH)
     recorder.parameter("slide_height", "Slide height", 0.7, 1.6, unit="m", base_value=SLIDE_HEIGHT)
     recorder.parameter("slide_front", "Slide height at the muzzle (share)", 0.55, 1.05, base_value=1.0)
-    recorder.parameter("barrel_length", "Length of the bare barrel", 0.3, 1.7, unit="m", base_value=BARREL_LENGTH,
-                       active_when=bare)
-    recorder.parameter("barrel_diameter", "Diameter of the bare barrel", 0.7, 1.5, unit="m",
-                       base_value=BARREL_DIAMETER, active_when=bare)
+    recorder.parameter(
+        "barrel_length", "Length of the bare barrel", 0.3, 1.7, unit="m", base_value=BARREL_LENGTH, active_when=bare
+    )
+    recorder.parameter(
+        "barrel_diameter",
+        "Diameter of the bare barrel",
+        0.7,
+        1.5,
+        unit="m",
+        base_value=BARREL_DIAMETER,
+        active_when=bare,
+    )
     recorder.parameter("frame_height", "Frame height", 0.6, 1.6)
     recorder.parameter("dust_cover", "Frame length before the guard", 0.05, 1.6, unit="m", base_value=DUST_COVER)
     recorder.limit("dust_cover", maximum=("slide_length", -1.5, 2.8))
@@ -118,8 +126,8 @@ def _below(recorder: Recorder, grip: Loft, number: int) -> Target:
     return Target(tuple(rest), "world", (), grip.rings[number][0])
 
 
-def _barrel(recorder: Recorder, slide: Loft) -> Loft:
-    """The bare barrel: it begins in the slide and ends in a swollen muzzle with the front sight."""
+def _barrels(recorder: Recorder, slide: Loft) -> list[Loft]:
+    """The bare barrel, the muzzle in the slide, the front sight of the first. A bare barrel begins in the slide and ends in a swollen muzzle with the front sight."""
     muzzle = at(recorder, slide, 3)
     profile = [(-0.02, 1.25), (0.006, 1.25), (0.014, 1.0), (0.86, 0.9), (0.88, 1.15), (1.0, 1.15)]
     places = [(place if place < 0.02 else place * BARREL_LENGTH, share * BARREL_DIAMETER) for place, share in profile]
@@ -130,11 +138,10 @@ def _barrel(recorder: Recorder, slide: Loft) -> Loft:
     blade = post(recorder, upper(recorder, barrel, 4, 5), (0.009, 0.003, 0.006), sink=0.5)
     recorder.part("bare barrel", components(barrel, blade), present_when=(when("action", BARE, TOGGLE),))
     recorder.part("muzzle", components(stub), present_when=(when("action", IN_SLIDE),))
-    joined = (*barrel.components, *stub.components, *blade.components)
-    return Loft(joined, barrel.images * len(joined), ())
+    return [barrel, stub, blade]
 
 
-def _details(recorder: Recorder, slide: Loft, frame: Loft) -> list[Loft]:
+def _details(recorder: Recorder, slide: Loft, frame: Loft) -> list[Loft | Component]:
     below = lower(recorder, frame, 2, 3)
     guard = trigger_guard(recorder, below, GUARD_LENGTH, GUARD_HEIGHT, along=-0.002)
     lever = trigger(recorder, below, 0.024, along=-0.008)
@@ -164,8 +171,7 @@ def _details(recorder: Recorder, slide: Loft, frame: Loft) -> list[Loft]:
     recorder.part("front sight", components(front), present_when=(when("sights", 1), when("action", IN_SLIDE)))
     recorder.part("light", components(light), present_when=(when("light", 2),))
     recorder.part("toggle", components(knobs), present_when=(when("action", TOGGLE),))
-    guards = Loft((guard,), ((),), ())
-    return [guards, lever, hammer, front, rear, light, knobs]
+    return [guard, lever, hammer, front, rear, light, knobs]
 
 
 def _knobs(recorder: Recorder, slide: Loft) -> Loft:

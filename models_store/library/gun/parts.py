@@ -5,7 +5,7 @@ The muzzle points to +x. Every part hangs on an anchor and reaches a little into
 
 from models_store.library.beam import beam
 from models_store.library.loft import Loft, Section
-from shapewright.modeling import Component, Recorder, Target, group
+from shapewright.modeling import Component, Mirror, Recorder, Target, group
 
 ROUND = 1.1
 """A control octagon must be wider by this than the round section that it becomes."""
@@ -44,7 +44,7 @@ def trigger_guard(recorder: Recorder, anchor: Target, length: float, height: flo
 
 def trigger(recorder: Recorder, anchor: Target, length: float, *, along: float = 0.0) -> Loft:
     """A thin lever that hangs under its anchor and bends forward."""
-    made = beam(
+    return beam(
         recorder,
         "-z",
         [
@@ -56,7 +56,6 @@ def trigger(recorder: Recorder, anchor: Target, length: float, *, along: float =
         offset=(along, 0.0, 0.0),
         anchors=anchor,
     )
-    return made
 
 
 def post(
@@ -100,28 +99,23 @@ def scope(recorder: Recorder, anchor: Target, length: float, diameter: float, he
 
 def curved_magazine(recorder: Recorder, anchor: Target, length: float, width: float, thickness: float) -> Loft:
     """A magazine that hangs under its anchor and may bend forward; ``width`` is along x."""
-    made = beam(
-        recorder,
-        "-z",
-        [Section(share * length, width, thickness) for share in (-0.15, 0.25, 0.5, 0.75, 1.0)],
-        anchors=anchor,
-    )
+    sections = [Section(share * length, width, thickness) for share in (-0.15, 0.25, 0.5, 0.75, 1.0)]
+    made = beam(recorder, "-z", sections, anchors=anchor)
+    recorder.scale(made.body(hinge=0), 1.0, "z", size="magazine_length")
+    recorder.scale(made.body(), 1.0, "u", size="magazine_width")
     for number in (1, 2, 3):
         recorder.rotate(made.beyond(number, hinge=number), -9.0, "v", angle="magazine_curve")
     return made
 
 
-def drum(recorder: Recorder, anchor: Target, diameter: float, thickness: float) -> Component:
-    """A flat round magazine that hangs under its anchor, its flat sides to front and rear."""
-    made = beam(
-        recorder,
-        "+x",
-        [Section(-thickness / 2, diameter, diameter), Section(thickness / 2, diameter, diameter)],
-        sides=8,
-        offset=(0.0, 0.0, -diameter * 0.42),
-        anchors=anchor,
-    )
-    return made.component
+def drum(recorder: Recorder, anchor: Target, diameter: float, thickness: float) -> Loft:
+    """A flat round magazine whose upper rim is sunk into what bears it, flat sides to front and rear."""
+    half = thickness / 2
+    sections = [Section(place, diameter * ROUND, diameter * ROUND) for place in (-half, half)]
+    made = beam(recorder, "+x", sections, sides=8, offset=(0.0, 0.0, -0.42 * diameter), anchors=anchor)
+    recorder.scale(Target((made.component.whole,), "world", (), anchor.elements), 1.0, "vz", size="magazine_length")
+    recorder.scale(made.body(), 1.0, "u", size="magazine_width")
+    return made
 
 
 def whole(*bodies: Loft | Component) -> Target:
@@ -136,3 +130,12 @@ def components(*bodies: Loft | Component) -> list[Component]:
 
 def _components(body: Loft | Component) -> tuple[Component, ...]:
     return body.components if isinstance(body, Loft) else (body,)
+
+
+def bipod(recorder: Recorder, anchor: Target, length: float) -> Loft:
+    """Two legs that hang under an anchor in the middle plane and spread to the sides."""
+    anchors = [anchor, Target(anchor.elements, "world", (Mirror("y"),))]
+    sections = [Section(-0.04 * length, 0.06 * length, 0.06 * length), Section(length, 0.05 * length, 0.05 * length)]
+    legs = beam(recorder, "-z", sections, anchors=anchors)
+    recorder.rotate(legs.body(hinge=0), 24.0, "u")
+    return legs
