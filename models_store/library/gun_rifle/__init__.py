@@ -1,0 +1,1 @@
+"""The procedural model ``gun_rifle``: see build.py."""
