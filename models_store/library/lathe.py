@@ -6,7 +6,8 @@ height is a number of its own: widening the stem of a glass leaves its bowl as i
 
 import math
 
-from shapewright.modeling import Component, Element, Recorder, group
+from shapewright.modeling import Component, Element, Recorder, Target, group
+from shapewright.modeling.elements import Turn
 
 Ring = tuple[Element, ...]
 
@@ -40,6 +41,29 @@ def widen(recorder: Recorder, rings: list[Ring], sigma: float, *, size: str = ""
         recorder.scale(target, sigma, "uv", size=size)
     else:
         recorder.scale(target, sigma, "uv")
+
+
+def draw_in(recorder: Recorder, rings: list[Ring], by: float, *, length: str = "") -> None:
+    """Move rings towards the z axis by a distance (below 0: away from it), each vertex along its own radius.
+
+    Unlike :func:`widen` it adds. ``length`` names the parameter that varies it, if any.
+    """
+    vertices = [vertex for ring in rings for vertex in ring]
+    bearings = [_bearing_deg(recorder, vertex) for vertex in vertices]
+    turns = [round(bearing - bearings[0], 6) for bearing in bearings]
+    targets = [
+        Target((vertex,), "world", (Turn("z", turn),) if index else ())
+        for index, (vertex, turn) in enumerate(zip(vertices, turns, strict=True))
+    ]
+    if length:
+        recorder.drag(targets, rho=by, phi_deg=bearings[0] + 180.0, length=length)
+    else:
+        recorder.drag(targets, rho=by, phi_deg=bearings[0] + 180.0)
+
+
+def _bearing_deg(recorder: Recorder, vertex: Element) -> float:
+    x, y, _ = recorder.positions(vertex)[0]
+    return round(math.degrees(math.atan2(y, x)), 6)
 
 
 def control_diameter(diameter: float, sides: int) -> float:
