@@ -44,7 +44,7 @@ def build() -> ProceduralModel:
     recorder.parameter("stem_thickness", "Stem thickness", 0.5, 3.0, base_value=STEM_DIAMETER)
     recorder.parameter("stem_root", "Stem width at the foot (relative to the stem)", 0.65, 1.8, base_value=STEM_ROOT)
     recorder.limit("stem_root", maximum=("stem_thickness", 2.1, -0.4))
-    recorder.parameter("stem_top", "Stem width below the bowl (relative to the stem)", 0.8, 2.0, base_value=STEM_TOP)
+    recorder.parameter("stem_top", "Stem width below the bowl (relative to the stem)", 0.7, 2.0, base_value=STEM_TOP)
     recorder.limit("stem_top", maximum=("stem_thickness", 2.15, -0.45))
     recorder.parameter("rim_diameter", "Rim diameter", 0.5, 1.6, base_value=RIM_DIAMETER)
     recorder.limit("rim_diameter", minimum=("stem_thickness", -0.25, 0.6))
