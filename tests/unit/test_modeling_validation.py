@@ -51,8 +51,8 @@ def bench() -> ProceduralModel:
     recorder.parameter("arm_height", "Armrest height", 0.5, 2.0, active_when=[when("arms", 1)])
     recorder.limit("arm_height", maximum=("thickness", 0.5, 1.0))
     seat = recorder.box(1.0, 1.0, 0.2)
-    backs = [recorder.box(0.1, 0.9, height, offset=(-0.2, 0.0, height / 2)) for height in (0.4, 0.9)]
-    arms = [recorder.box(0.7, 0.1, 0.4, offset=(0.0, side, 0.1)) for side in (0.2, -0.2)]
+    backs = [recorder.box(0.1, 0.9, height, offset=(-0.2, 0.0, 0.0)) for height in (0.4, 0.9)]
+    arms = [recorder.box(0.7, 0.1, 0.4, offset=(0.0, side, 0.0)) for side in (0.2, -0.2)]
     for component in (seat, *backs, *arms):
         recorder.mark_sharp(*component.faces)
     recorder.scale(group(seat.whole, frame="world"), 1.0, "z", size="thickness")
