@@ -29,6 +29,17 @@ def board(recorder: Recorder, low: Vector, high: Vector, images: Sequence[Image]
     return boards
 
 
+def strut(
+    recorder: Recorder, low: Vector, high: Vector, size: tuple[float, float], images: Sequence[Image] = ALONE
+) -> list[Component]:
+    """Model a slanting bar between the middles of its level ends, and its images; ``size`` is its extent in x and y."""
+    x, y = size[0] / 2, size[1] / 2
+    bars = board(recorder, (low[0] - x, low[1] - y, low[2]), (low[0] + x, low[1] + y, high[2]), images)
+    tops = [Target((bar.top,), "world", image) for bar, image in zip(bars, images, strict=True)]
+    move(recorder, tops, (high[0] - low[0], high[1] - low[1], 0.0))
+    return bars
+
+
 def placed(images: Iterable[Image]) -> list[Target]:
     """Return anchors at the origin of the model, one an image."""
     return [Target((), "world", image) for image in images]

@@ -1,0 +1,1 @@
+"""The procedural model ``table_pedestal``: see build.py."""
