@@ -1,0 +1,1 @@
+"""The procedural model ``table_wire``: see build.py."""
