@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from chair_model import armchair
 from command_line import write_lamp_model
 from PIL import Image
 from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
@@ -37,10 +38,11 @@ JOB_TIMEOUT_MS = 180_000
 
 @dataclass(frozen=True)
 class Site:
-    """A running service with two models and a trained classifier."""
+    """A running service with four models, two of them chairs, and a classifier of lamps and crates."""
 
     url: str
     lamp_id: str
+    armchair_id: str
     lamp: ProceduralModel
 
 
@@ -59,8 +61,10 @@ def site(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     ):
         lamp, _ = client.post_document("/v1/models", lamp_file.read_text())
         crate, _ = client.post_document("/v1/models", crate_file.read_text())
+        chair, _ = client.post_document("/v1/models", armchair().to_json())
+        client.post_document("/v1/models", _stool().to_json())
         _train(client, [lamp["id"], crate["id"]])
-        yield Site(document["url"], lamp["id"], ProceduralModel.load(lamp_file))
+        yield Site(document["url"], lamp["id"], chair["id"], ProceduralModel.load(lamp_file))
 
 
 def _write_crate_model(folder: Path) -> Path:
@@ -71,6 +75,14 @@ def _write_crate_model(folder: Path) -> Path:
     path = folder / "crate.json"
     recorder.build().save(path)
     return path
+
+
+def _stool() -> ProceduralModel:
+    recorder = Recorder("stool", "chair", description="a seat on a leg")
+    seat = recorder.box(1.0, 1.0, 0.2)
+    recorder.extrude(seat.bottom, 0.8, length="leg_length")
+    recorder.parameter("leg_length", "Leg length", 0.5, 2.0)
+    return recorder.build()
 
 
 def _train(client: Client, model_ids: list[str]) -> None:
@@ -167,7 +179,8 @@ def _changed_share(a: np.ndarray, b: np.ndarray) -> float:
 def test_a_slider_moves_the_mesh_and_nothing_else(new_page: Callable[..., Page], site: Site, tmp_path: Path) -> None:
     page = new_page()
     models = page.get_by_role("region", name="Models")
-    expect(models.get_by_role("link")).to_have_count(2)
+    expect(models.get_by_role("link")).to_have_count(4)
+    expect(models.get_by_role("group", name="Class Chair").get_by_role("link")).to_have_count(2)
     expect(page.get_by_text("Service ready")).to_be_visible()
     models.get_by_role("link", name="Lamp").click()
     expect(models.get_by_role("link", name="Lamp")).to_have_attribute("aria-current", "true")
@@ -198,11 +211,50 @@ def test_a_slider_moves_the_mesh_and_nothing_else(new_page: Callable[..., Page],
     assert float(shown.inner_text().removesuffix(" mm")) == pytest.approx(100 * used, rel=0.01)
 
 
+def test_what_depends_on_other_values_follows_them(new_page: Callable[..., Page], site: Site, tmp_path: Path) -> None:
+    page = new_page(f"#/models/{site.armchair_id}")
+    stage = _drawn(page, f"model {site.armchair_id}")
+    whole = _picture(stage, tmp_path / "whole.png")
+
+    def row(name: str) -> Locator:
+        return page.locator(f'[data-parameter="{name}"]')
+
+    def sent_by(action: Callable[[], object]) -> dict[str, float]:
+        with page.expect_response(lambda answer: answer.url.endswith("/instances")) as answer:
+            action()
+        assert answer.value.status == 200
+        values: dict[str, float] = json.loads(answer.value.headers["x-shapewright-values"])
+        return values
+
+    arm_height = page.get_by_role("slider", name="Armrest height")
+    assert sent_by(lambda: arm_height.press("End"))["arm_height"] == 2.0
+    expect(row("arm_height").get_by_role("status")).to_have_text("0.400 m")
+    toggle = page.get_by_role("switch", name="Armrests")
+    assert sent_by(toggle.click)["armrests"] == 0.0
+    expect(toggle).not_to_be_checked()
+    expect(arm_height).to_be_disabled()
+    expect(row("arm_height")).to_contain_text("Only with armrests")
+    bare = _picture(stage, tmp_path / "bare.png", _unlike(whole))
+
+    assert sent_by(lambda: page.get_by_label("Back", exact=True).select_option("no back"))["back"] == 3.0
+    _picture(stage, tmp_path / "no-back.png", _unlike(bare))
+    page.screenshot(path=tmp_path / "inactive.png")
+
+    leg = page.get_by_role("slider", name="Leg length")
+    assert sent_by(lambda: leg.press("Home"))["ring_height"] == 0.625
+    expect(row("ring_height").get_by_role("status")).to_have_text("0.188 m")
+    expect(page.get_by_role("slider", name="Ring height")).to_have_attribute("max", "0.625")
+
+    toggle.click()
+    expect(row("arm_height").get_by_role("status")).to_have_text("0.400 m")  # as it was before
+    page.screenshot(path=tmp_path / "active.png")
+
+
 def test_thumbnails_come_when_they_are_drawn(new_page: Callable[..., Page]) -> None:
     page = new_page()
     page.wait_for_function(
         "() => { const all = [...document.querySelectorAll('.thumbnail img')];"
-        " return all.length === 2 && all.every((image) => image.naturalWidth > 0); }",
+        " return all.length === 4 && all.every((image) => image.naturalWidth > 0); }",
         timeout=60_000,
     )
     expect(page.get_by_test_id("thumbnail-fallback")).to_have_count(0)

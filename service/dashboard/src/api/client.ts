@@ -161,10 +161,17 @@ export function createApi(baseUrl: string, fetcher?: (request: Request) => Promi
       return body(http.GET("/v1/estimations/{id}", { params: { path: { id } } }));
     },
 
-    async estimate(input: { meshId: string; modelId: string; samples: number }): Promise<Accepted> {
+    /** Rebuild a mesh with a model, or with the best of a class's models. */
+    async estimate(input: {
+      meshId: string;
+      target: { modelId: string } | { className: string };
+      samples: number;
+    }): Promise<Accepted> {
+      const { target } = input;
+      const named = "modelId" in target ? { model_id: target.modelId } : { class_name: target.className };
       return body(
         http.POST("/v1/estimations", {
-          body: { mesh_id: input.meshId, model_id: input.modelId, settings: { samples: input.samples } },
+          body: { mesh_id: input.meshId, ...named, settings: { samples: input.samples } },
         }),
       );
     },

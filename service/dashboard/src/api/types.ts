@@ -5,6 +5,7 @@ type Schemas = components["schemas"];
 
 export type Model = Schemas["ModelOut"];
 export type Parameter = Schemas["ParameterOut"];
+export type Condition = Schemas["ConditionOut"];
 export type Mesh = Schemas["MeshOut"];
 export type Job = Schemas["JobOut"];
 export type JobState = Job["state"];

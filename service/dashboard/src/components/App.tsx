@@ -4,6 +4,7 @@ import { useModels, useUploadMesh, useUploadModel } from "../api/queries";
 import { useMeshSession } from "../hooks/useMeshSession";
 import { useModelSession } from "../hooks/useModelSession";
 import { navigate, useRoute } from "../hooks/useRoute";
+import { byClass } from "../lib/classes";
 import { count, humanize } from "../lib/format";
 import { MESH_ACCEPT, isModelDocument } from "../lib/meshFiles";
 import { DropTarget } from "./DropTarget";
@@ -30,7 +31,7 @@ export function App() {
   // Without anything in the address the first model is shown, so that the page never opens on an empty stage.
   const model =
     route.kind === "home"
-      ? (models.data?.[0] ?? null)
+      ? (byClass(models.data)[0]?.models[0] ?? null)
       : (models.data?.find(({ id }) => id === linkedModel) ?? null);
   const modelMissing = linkedModel !== null && models.isSuccess && model === null;
   const modelSession = useModelSession(model, route.kind === "model" ? route.values : undefined);
@@ -170,9 +171,9 @@ function Welcome() {
     <section className="inspector">
       <h2>How it goes</h2>
       <ol className="welcome">
-        <li>Add procedural models: one JSON document for each class of objects.</li>
+        <li>Add procedural models: JSON documents, one or several for each class of objects.</li>
         <li>Train a classifier on them. Their random variations are all it needs.</li>
-        <li>Upload an unknown mesh, ask what it is, and let the model of its class rebuild it.</li>
+        <li>Upload an unknown mesh, ask what it is, and let the models of its class rebuild it.</li>
       </ol>
     </section>
   );

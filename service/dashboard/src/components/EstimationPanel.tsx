@@ -4,6 +4,8 @@ import { useEstimate, useModels } from "../api/queries";
 import type { Estimation, Model } from "../api/types";
 import { useJob } from "../hooks/useJob";
 import { navigate } from "../hooks/useRoute";
+import { byClass, modelNames } from "../lib/classes";
+import type { ModelClass } from "../lib/classes";
 import { ago, humanize, parseTime } from "../lib/format";
 import { EstimationResult } from "./EstimationResult";
 import { JobProgress } from "./JobProgress";
@@ -11,7 +13,7 @@ import { Problem } from "./Problem";
 
 interface EstimationPanelProps {
   meshId: string;
-  /** The class found for the mesh: its model is the default. */
+  /** The class found for the mesh: its models are the default. */
   foundClass: string | null;
   /** The estimation that is shown. */
   estimation: Estimation | undefined;
@@ -22,25 +24,28 @@ interface EstimationPanelProps {
 const DEFAULT_SAMPLES = 1000;
 const MOST_SAMPLES = 100_000;
 
-/** Rebuild the mesh with a model: choose it, start, follow, read the answer. */
+/** Rebuild the mesh with a model or with all of a class: choose, start, follow, read the answer. */
 export function EstimationPanel({ meshId, foundClass, estimation, estimations }: EstimationPanelProps) {
   const models = useModels();
   const estimate = useEstimate();
-  const [chosenModel, setChosenModel] = useState<string | null>(null);
+  const [chosen, setChosen] = useState<string | null>(null);
   const [samples, setSamples] = useState(String(DEFAULT_SAMPLES));
 
   const live = useJob(estimation && estimation.state !== "succeeded" ? estimation.job_id : null);
   const [again, setAgain] = useState(false);
   const showForm = estimation === undefined || again;
-  const modelId = chosenModel ?? defaultModel(models.data, foundClass)?.id ?? null;
+  const classes = byClass(models.data);
+  const target = chosen ?? defaultTarget(classes, foundClass);
   const sampleCount = Number(samples);
   const samplesValid = Number.isInteger(sampleCount) && sampleCount >= 1 && sampleCount <= MOST_SAMPLES;
   const modelOf = (id: string | null) => models.data?.find((model) => model.id === id);
 
+  const found = (className: string) => (className === foundClass ? " (class found)" : "");
+
   const start = () => {
-    if (modelId === null || !samplesValid) return;
+    if (target === null || !samplesValid) return;
     estimate.mutate(
-      { meshId, modelId, samples: sampleCount },
+      { meshId, target: readTarget(target), samples: sampleCount },
       {
         onSuccess: (accepted) => {
           setAgain(false);
@@ -75,16 +80,26 @@ export function EstimationPanel({ meshId, foundClass, estimation, estimations }:
               <label htmlFor="model">Model</label>
               <select
                 id="model"
-                value={modelId ?? ""}
-                disabled={!models.data?.length}
-                onChange={(event) => setChosenModel(event.target.value)}
+                value={target ?? ""}
+                disabled={classes.length === 0}
+                onChange={(event) => setChosen(event.target.value)}
               >
-                {!models.data?.length && <option value="">No models</option>}
-                {models.data?.map((model) => (
-                  <option key={model.id} value={model.id}>
-                    {humanize(model.name)}
-                    {foundClass === model.class_name ? " (class found)" : ""}
-                  </option>
+                {classes.length === 0 && <option value="">No models</option>}
+                {classes.map(({ name, models: members }) => (
+                  <optgroup key={name} label={humanize(name)}>
+                    {members.length > 1 && (
+                      <option value={CLASS + name}>
+                        Any {humanize(name).toLowerCase()}: best of {modelNames(members)}
+                        {found(name)}
+                      </option>
+                    )}
+                    {members.map((model) => (
+                      <option key={model.id} value={model.id}>
+                        {humanize(model.name)}
+                        {members.length === 1 && found(name)}
+                      </option>
+                    ))}
+                  </optgroup>
                 ))}
               </select>
             </div>
@@ -109,7 +124,7 @@ export function EstimationPanel({ meshId, foundClass, estimation, estimations }:
           <button
             type="submit"
             className="button"
-            disabled={modelId === null || !samplesValid || estimate.isPending}
+            disabled={target === null || !samplesValid || estimate.isPending}
           >
             {estimate.isPending ? "Starting…" : "Estimate parameters"}
           </button>
@@ -141,13 +156,22 @@ export function EstimationPanel({ meshId, foundClass, estimation, estimations }:
   );
 }
 
-/** The model of the class found, else the first one. */
-export function defaultModel(models: Model[] | undefined, foundClass: string | null): Model | undefined {
-  return models?.find((model) => model.class_name === foundClass) ?? models?.[0];
+/** Begins the value of the choice "any model of this class"; ids of models hold no colon. */
+const CLASS = "class:";
+
+/** All models of the class found, else of the first class; the model itself if there is only one. */
+export function defaultTarget(classes: ModelClass[], foundClass: string | null): string | null {
+  const chosen = classes.find(({ name }) => name === foundClass) ?? classes[0];
+  if (chosen === undefined) return null;
+  return chosen.models.length > 1 ? CLASS + chosen.name : (chosen.models[0]?.id ?? null);
+}
+
+function readTarget(value: string): { modelId: string } | { className: string } {
+  return value.startsWith(CLASS) ? { className: value.slice(CLASS.length) } : { modelId: value };
 }
 
 function describe(estimation: Estimation, model: Model | undefined): string {
-  const name = model ? humanize(model.name) : "Unknown model";
+  const name = humanize(model?.name ?? (estimation.class_name ? `any ${estimation.class_name}` : "unknown model"));
   const outcome = estimation.result ? `layer ${estimation.result.layer}` : estimation.state;
   return `${name}, ${outcome}, ${ago(parseTime(estimation.created_at), new Date())}`;
 }

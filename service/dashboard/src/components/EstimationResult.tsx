@@ -1,5 +1,5 @@
 import type { Estimation, EstimationResult as Result, Model } from "../api/types";
-import { duration, significant } from "../lib/format";
+import { count, duration, humanize, significant } from "../lib/format";
 import { formatRoute } from "../lib/route";
 import { Icon } from "./Icon";
 import { ParameterTable } from "./ParameterTable";
@@ -17,7 +17,7 @@ const LAYERS: Record<number, string> = {
 export function EstimationResult({ estimation, model }: { estimation: Estimation; model: Model | undefined }) {
   const result = estimation.result;
   if (!result) return null;
-  const { layer, complete, distances, parameters, seconds } = result;
+  const { layer, complete, distances, parameters, seconds, models_tried } = result;
   const threshold = thresholds(estimation);
   const values = Object.fromEntries(parameters.map(({ name, value }) => [name, value]));
   return (
@@ -40,6 +40,7 @@ export function EstimationResult({ estimation, model }: { estimation: Estimation
           <dd>{duration(seconds)}</dd>
         </div>
       </dl>
+      {models_tried.length > 0 && <ModelsTried estimation={estimation} tried={models_tried} />}
       <ParameterTable parameters={parameters} />
       <div className="button-row">
         {estimation.mesh_url && (
@@ -53,6 +54,27 @@ export function EstimationResult({ estimation, model }: { estimation: Estimation
           </a>
         )}
       </div>
+    </div>
+  );
+}
+
+/** Which model of the class it is, and how near each of them came at first. */
+function ModelsTried({ estimation, tried }: { estimation: Estimation; tried: Result["models_tried"] }) {
+  const chosen = tried.find((model) => model.model_id === estimation.model_id);
+  return (
+    <div className="models-tried" data-testid="models-tried">
+      <p>
+        Rebuilt with <strong>{humanize(chosen?.model_name ?? "")}</strong>, out of {count(tried.length, "model")} of the
+        class.
+      </p>
+      <ol>
+        {tried.map((model) => (
+          <li key={model.model_id} data-chosen={model.model_id === estimation.model_id}>
+            {humanize(model.model_name)}{" "}
+            <small title="Smallest panorama distance of its random variations">{significant(model.panorama)}</small>
+          </li>
+        ))}
+      </ol>
     </div>
   );
 }

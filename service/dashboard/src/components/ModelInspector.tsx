@@ -1,10 +1,11 @@
 import { useEffect, useState } from "react";
 
 import type { Model } from "../api/types";
-import type { Values } from "../hooks/useInstance";
 import { count, humanize } from "../lib/format";
+import { settle } from "../lib/parameterSpace";
+import type { Values } from "../lib/parameterSpace";
 import { Icon } from "./Icon";
-import { ParameterSlider } from "./ParameterSlider";
+import { ParameterControl } from "./ParameterControl";
 
 interface ModelInspectorProps {
   model: Model;
@@ -18,6 +19,7 @@ interface ModelInspectorProps {
 /** The parameters of the selected model. */
 export function ModelInspector({ model, values, glb, onValues, onRandom, onHeld }: ModelInspectorProps) {
   const changed = model.parameters.some(({ name }) => (values[name] ?? 1) !== 1);
+  const settings = settle(model.parameters, values);
   return (
     <section className="inspector" aria-label="Model">
       <div className="inspector-head">
@@ -37,6 +39,7 @@ export function ModelInspector({ model, values, glb, onValues, onRandom, onHeld 
             <dt>Surface</dt>
             <dd>{model.closed ? "Closed" : "Open"}</dd>
           </div>
+          <Symmetry of={model.symmetry} />
         </dl>
       </div>
       <div className="inspector-actions">
@@ -50,18 +53,35 @@ export function ModelInspector({ model, values, glb, onValues, onRandom, onHeld 
       </div>
       <h3>Parameters</h3>
       <div className="parameters">
-        {model.parameters.map((parameter) => (
-          <ParameterSlider
-            key={parameter.name}
-            parameter={parameter}
-            value={values[parameter.name] ?? 1}
-            onChange={(value) => onValues({ ...values, [parameter.name]: value })}
-            onHeld={onHeld}
-          />
-        ))}
+        {model.parameters.map((parameter) => {
+          const setting = settings[parameter.name];
+          return (
+            setting && (
+              <ParameterControl
+                key={parameter.name}
+                parameter={parameter}
+                setting={setting}
+                onChange={(value) => onValues({ ...values, [parameter.name]: value })}
+                onHeld={onHeld}
+              />
+            )
+          );
+        })}
         {model.parameters.length === 0 && <p className="muted">This model has no parameters.</p>}
       </div>
     </section>
+  );
+}
+
+function Symmetry({ of: { mirrors, axis, order } }: { of: Model["symmetry"] }) {
+  const found = mirrors.map((mirror) => `Mirror ${mirror}`);
+  if (axis) found.push(`${order}-fold about ${axis}`);
+  if (found.length === 0) return null;
+  return (
+    <div>
+      <dt>Symmetry</dt>
+      <dd>{found.join(", ")}</dd>
+    </div>
   );
 }
 

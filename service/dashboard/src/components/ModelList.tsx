@@ -3,12 +3,16 @@ import { useRef, useState } from "react";
 import { useModels, useUploadModel } from "../api/queries";
 import type { Model } from "../api/types";
 import { navigate } from "../hooks/useRoute";
+import { byClass } from "../lib/classes";
 import { count, humanize } from "../lib/format";
 import { formatRoute } from "../lib/route";
 import { Icon } from "./Icon";
 import { Problem } from "./Problem";
 
-/** The procedural models as cards. */
+/** With more models than these only the class of the selected one is open at first. */
+const MOST_OPEN = 8;
+
+/** The procedural models as cards, those of one class together. */
 export function ModelList({ selectedId }: { selectedId: string | null }) {
   const models = useModels();
   const upload = useUploadModel();
@@ -51,13 +55,25 @@ export function ModelList({ selectedId }: { selectedId: string | null }) {
           </button>
         </div>
       )}
-      <ul className="model-cards">
-        {models.data?.map((model) => (
-          <li key={model.id}>
-            <ModelCard model={model} selected={model.id === selectedId} />
-          </li>
-        ))}
-      </ul>
+      {byClass(models.data).map(({ name, models: members }) => (
+        <details
+          key={name}
+          className="model-class"
+          aria-label={`Class ${humanize(name)}`}
+          open={(models.data?.length ?? 0) <= MOST_OPEN || members.some((model) => model.id === selectedId)}
+        >
+          <summary>
+            {humanize(name)} {members.length > 1 && <span>{count(members.length, "model")}</span>}
+          </summary>
+          <ul className="model-cards">
+            {members.map((model) => (
+              <li key={model.id}>
+                <ModelCard model={model} selected={model.id === selectedId} />
+              </li>
+            ))}
+          </ul>
+        </details>
+      ))}
     </section>
   );
 }

@@ -19,17 +19,20 @@ export function ParameterTable({ parameters }: { parameters: ParameterEstimate[]
       </thead>
       <tbody>
         {parameters.map((parameter) => (
-          <tr key={parameter.name}>
+          <tr key={parameter.name} data-active={parameter.active}>
             <th scope="row">{parameterLabel(parameter)}</th>
-            <td className="number">{parameterValue(parameter.value, parameter)}</td>
-            <td>
-              <RangeBar parameter={parameter} />
-            </td>
+            <td className="number">{estimated(parameter)}</td>
+            <td>{parameter.active && parameter.option === null && <RangeBar parameter={parameter} />}</td>
           </tr>
         ))}
       </tbody>
     </table>
   );
+}
+
+function estimated(parameter: ParameterEstimate): string {
+  if (!parameter.active) return "inactive";
+  return parameter.option ?? parameterValue(parameter.value, parameter);
 }
 
 function RangeBar({ parameter }: { parameter: ParameterEstimate }) {

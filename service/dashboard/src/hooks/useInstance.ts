@@ -4,8 +4,8 @@ import type { Instance } from "../api/client";
 import { LatestWins } from "../api/latestWins";
 import { ApiError } from "../api/problem";
 import { api } from "../api/queries";
+import type { Values } from "../lib/parameterSpace";
 
-export type Values = Record<string, number>;
 type Ask = { values: Values } | { seed: number };
 
 export interface LiveInstance {

@@ -1,0 +1,30 @@
+/** Models by class: a class of objects is the set of models that share its name. */
+import type { Model } from "../api/types";
+
+export interface ModelClass {
+  name: string;
+  models: Model[];
+}
+
+/** The classes by name, the models of each by name, of equal names the newest first. */
+export function byClass(models: Model[] | undefined): ModelClass[] {
+  const classes = new Map<string, Model[]>();
+  for (const model of models ?? []) {
+    const found = classes.get(model.class_name);
+    if (found) found.push(model);
+    else classes.set(model.class_name, [model]);
+  }
+  return [...classes]
+    .map(([name, members]) => ({
+      name,
+      models: members.toSorted(
+        (a, b) => a.name.localeCompare(b.name) || b.created_at.localeCompare(a.created_at),
+      ),
+    }))
+    .toSorted((a, b) => a.name.localeCompare(b.name));
+}
+
+/** How many models an estimation for the class tries: versions of one name count once. */
+export function modelNames(models: Model[]): number {
+  return new Set(models.map((model) => model.name)).size;
+}
