@@ -12,14 +12,16 @@ import models_store.library
 from models_store.library.shipped import list_shipped, load_shipped, thumbnail_png
 from shapewright.errors import ModelError
 from shapewright.modeling import CompiledModel, ProceduralModel
+from shapewright.modeling.validation import validate_model
 
 NAMES = list(list_shipped())
-MIRROR_PLANES = {"glass_with_stem": "xy", "table": "xy", "sword": "y"}
-"""Axes whose mirror planes every variation has."""
-TURN_ORDERS = {"glass_with_stem": 12, "table": 2, "sword": 1}
-"""How often a turn about z maps every variation onto itself."""
-EXTENTS = {"glass_with_stem": (0.2, 2.0), "table": (0.2, 3.0), "sword": (0.02, 2.0)}
-"""Smallest and largest extent that any variation may have along any axis, in model units."""
+CLASSES = (
+    "fish", "glass_with_stem", "helicopter", "gun", "table", "spider", "sword", "office_chair", "bird", "bicycle",
+    "airplane", "ship", "stool", "animal", "spaceship", "tower", "humanoid", "chair",
+)  # fmt: skip
+"""The paper's Table 3, then its Table 2."""
+MAX_CONTROL_VERTICES = 1_600
+"""What is subdivided twice has 16 times as many; batches and single instances must stay fast."""
 
 every_model = pytest.mark.parametrize("name", NAMES)
 
@@ -34,7 +36,6 @@ def compiled_model(name: str) -> CompiledModel:
     return model_of(name).compile()
 
 
-@cache
 def variations(name: str) -> np.ndarray:
     """Vertices (200, V, 3) of random variations."""
     compiled = compiled_model(name)
@@ -49,8 +50,12 @@ def farthest_from(points: np.ndarray, image: np.ndarray) -> float:
     return float(cKDTree(points).query(image)[0].max())
 
 
-def test_the_library_has_its_three_models() -> None:
-    assert {"glass_with_stem", "table", "sword"} <= set(NAMES)
+def test_every_class_has_a_model_that_bears_its_name() -> None:
+    classes = {name: model_of(name).class_name for name in NAMES}
+    assert set(CLASSES) <= set(classes.values())
+    for name, class_name in classes.items():
+        assert classes[class_name] == class_name
+        assert name == class_name or name.startswith(f"{class_name}_"), name
 
 
 def test_a_name_that_does_not_ship_is_refused() -> None:
@@ -68,109 +73,34 @@ def test_the_document_is_what_its_script_models(name: str) -> None:
 
 
 @every_model
-def test_the_document_replays_to_the_same_ids_and_mesh(name: str) -> None:
-    script = importlib.import_module(f"models_store.library.{name}.build")
-    recorded, replayed = script.build().compile(), compiled_model(name)
-    np.testing.assert_array_equal(recorded.control_vertex_ids, replayed.control_vertex_ids)
-    assert recorded.control_faces == replayed.control_faces
-    np.testing.assert_array_equal(base_points(recorded), base_points(replayed))
+def test_nothing_is_wrong_with_a_model(name: str) -> None:
+    """The checks of `shapewright models validate --all`, with fewer variations."""
+    assert model_of(name).name == name
+    text = list_shipped()[name].read_text(encoding="utf-8")
+    assert [str(finding) for finding in validate_model(model_of(name), variations=40, document=text)] == []
 
 
 @every_model
 def test_without_parameters_the_operations_give_the_base_model(name: str) -> None:
-    model = model_of(name)
+    model, compiled = model_of(name), compiled_model(name)
     bare = ProceduralModel(model.name, model.class_name, model.operations, (), model.description, model.closed)
-    np.testing.assert_allclose(base_points(bare.compile()), base_points(compiled_model(name)), atol=1e-12)
+    present = np.append(compiled.parts_present(compiled.base_values()[None])[0], True)[compiled.surface_parts()]
+    np.testing.assert_allclose(base_points(bare.compile())[present], base_points(compiled)[present], atol=1e-12)
 
 
 @every_model
-def test_parameters_are_plainly_named_and_vary_around_the_base(name: str) -> None:
+def test_parameters_are_plainly_named(name: str) -> None:
     model = model_of(name)
     labels = [parameter.label for parameter in model.parameters]
     assert len(set(labels)) == len(labels)
-    assert 5 <= len(model.parameters) <= 15
+    assert len(labels) >= 5
     for parameter in model.parameters:
-        assert parameter.base_value is not None, parameter.name
-        assert parameter.base_value > 0, parameter.name
+        assert parameter.unit is None or parameter.base_value, f"{parameter.name} has a unit and no measure"
 
 
 @every_model
-def test_each_end_of_each_range_moves_something(name: str) -> None:
-    compiled = compiled_model(name)
-    base = base_points(compiled)
-    size = np.ptp(base, axis=0).max()
-    for column, parameter in enumerate(compiled.model.parameters):
-        for end in (parameter.minimum, parameter.maximum):
-            if end == 1.0:
-                continue
-            values = compiled.base_values()
-            values[column] = end
-            moved = np.abs(compiled.surface_points(values[None])[0] - base).max()
-            assert moved > 2e-3 * size, f"{parameter.name} = {end}"
-
-
-@every_model
-def test_a_model_is_fine_and_yet_cheap(name: str) -> None:
-    assert 1_000 <= base_points(compiled_model(name)).shape[0] <= 5_000
-
-
-@every_model
-def test_variations_are_finite_and_of_sane_extent(name: str) -> None:
-    points = variations(name)
-    assert np.isfinite(points).all()
-    extents = np.ptp(points, axis=1)
-    smallest, largest = EXTENTS[name]
-    assert extents.min() >= smallest
-    assert extents.max() <= largest
-
-
-@every_model
-def test_variations_have_no_degenerate_face(name: str) -> None:
-    corners = variations(name)[:, compiled_model(name).surface_triangles()]
-    crosses = np.cross(corners[:, :, 1] - corners[:, :, 0], corners[:, :, 2] - corners[:, :, 0])
-    areas = np.linalg.norm(crosses, axis=2) / 2
-    assert (areas.min(axis=1) / areas.mean(axis=1)).min() > 1e-5
-
-
-@every_model
-def test_every_part_of_every_variation_encloses_a_volume(name: str) -> None:
-    compiled = compiled_model(name)
-    assert compiled.model.closed
-    parts = compiled.instance(compiled.base_values()).to_trimesh().split(only_watertight=False)
-    base = base_points(compiled)
-    for part in parts:
-        assert part.is_watertight
-        assert part.is_winding_consistent
-        rows = cKDTree(base).query(part.vertices)[0]
-        assert rows.max() == 0.0
-    triangles = compiled.surface_triangles()
-    for component in connected_triangles(triangles, len(base)):
-        corners = variations(name)[:, component]
-        volumes = np.einsum("bfi,bfi->b", corners[:, :, 0], np.cross(corners[:, :, 1], corners[:, :, 2])) / 6
-        assert volumes.min() > 0.0
-
-
-def connected_triangles(triangles: np.ndarray, count: int) -> list[np.ndarray]:
-    """Triangles of each connected part."""
-    from scipy import sparse
-    from scipy.sparse.csgraph import connected_components
-
-    links = sparse.coo_array((np.ones(len(triangles) * 2), (triangles[:, [0, 0]].ravel(), triangles[:, 1:].ravel())))
-    links.resize((count, count))
-    n_parts, part = connected_components(links.tocsr(), directed=False)
-    return [triangles[part[triangles[:, 0]] == i] for i in range(n_parts)]
-
-
-@every_model
-def test_every_variation_is_as_symmetric_as_its_class(name: str) -> None:
-    for points in variations(name)[:20]:
-        for axis in MIRROR_PLANES[name]:
-            image = points.copy()
-            image[:, "xyz".index(axis)] *= -1
-            assert farthest_from(points, image) < 1e-9, axis
-        angle = 2 * np.pi / TURN_ORDERS[name]
-        turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
-        assert farthest_from(points, points @ turn.T) < 1e-9
+def test_a_model_is_cheap(name: str) -> None:
+    assert len(compiled_model(name).control_vertex_ids) <= MAX_CONTROL_VERTICES
 
 
 @every_model
