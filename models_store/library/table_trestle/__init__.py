@@ -1,0 +1,1 @@
+"""The procedural model ``table_trestle``: see build.py."""
