@@ -127,7 +127,7 @@ def _below(recorder: Recorder, grip: Loft, number: int) -> Target:
 
 
 def _barrels(recorder: Recorder, slide: Loft) -> list[Loft]:
-    """The bare barrel, the muzzle in the slide, the front sight of the first. A bare barrel begins in the slide and ends in a swollen muzzle with the front sight."""
+    """The bare barrel, from the slide to a swollen muzzle; the muzzle of one in the slide; the sight of the first."""
     muzzle = at(recorder, slide, 3)
     profile = [(-0.02, 1.25), (0.006, 1.25), (0.014, 1.0), (0.86, 0.9), (0.88, 1.15), (1.0, 1.15)]
     places = [(place if place < 0.02 else place * BARREL_LENGTH, share * BARREL_DIAMETER) for place, share in profile]

@@ -9,7 +9,7 @@ from models_store.library.author import publish
 from models_store.library.beam import at, beam, lower, upper
 from models_store.library.gun.parts import components, post, trigger, trigger_guard, tube, whole
 from models_store.library.loft import Loft, Section
-from shapewright.modeling import ProceduralModel, Recorder, when
+from shapewright.modeling import Component, ProceduralModel, Recorder, when
 
 BUTT_LENGTH, BUTT_DEPTH, BUTT_BEND_DEG = 0.150, 0.046, 17.0
 FORE_LENGTH, STOCK_HEIGHT, STOCK_WIDTH = 0.16, 0.034, 0.034
@@ -31,7 +31,7 @@ def build() -> ProceduralModel:
     recorder.part("ramrod", components(rod), present_when=(when("ramrod", 1),))
     recorder.part("trigger guard", components(guard), present_when=(when("guard", 1),))
     lock = _lock(recorder, fore)
-    bodies = (fore, butt, barrel, *on_barrel, guard, lever, rod, *lock)
+    bodies: tuple[Loft | Component, ...] = (fore, butt, barrel, *on_barrel, guard, lever, rod, *lock)
     recorder.scale(whole(*bodies), 1.0, "v", pivot=fore.component.whole, size="thickness")
     recorder.symmetry(mirrors=("y",), apart=components(*lock))
     return recorder.build()
