@@ -1,0 +1,1 @@
+"""The procedural model ``bicycle_step_through``: see build.py."""
