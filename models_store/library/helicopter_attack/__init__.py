@@ -1,0 +1,1 @@
+"""The procedural model ``helicopter_attack``: see build.py."""
