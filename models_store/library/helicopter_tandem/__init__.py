@@ -1,0 +1,1 @@
+"""The procedural model ``helicopter_tandem``: see build.py."""
