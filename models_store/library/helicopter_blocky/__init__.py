@@ -1,0 +1,1 @@
+"""The procedural model ``helicopter_blocky``: see build.py."""
