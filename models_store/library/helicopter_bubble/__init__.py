@@ -1,0 +1,1 @@
+"""The procedural model ``helicopter_bubble``: see build.py."""
