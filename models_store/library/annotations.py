@@ -11,7 +11,8 @@ modelling call (:class:`AnnotatingRecorder`), from looking at the object; no mea
 ``operation`` is an index into the model's list, ``mode`` how an inserted parameter acts on it. There is one judgement
 for each variation that :func:`variations_of` lists, in that order. A variation is important if changing it, together
 with its group, makes a visibly other object of the same class. A group holds at least two variations of one kind of
-operation, and shares none with another: a parameter for one of them should vary all.
+operation, and shares none with another: a parameter for one of them should vary all. An operation of an optional part
+is judged on an object that has the part, which the base object need not.
 """
 
 import json
@@ -35,7 +36,11 @@ from shapewright.modeling.operations import (
 
 ANNOTATIONS = "annotations.json"
 FORMAT, VERSION = "shapewright-annotations", 1
-ANNOTATOR = "the person who modelled the object, by eye, before any importance measure existed"
+ANNOTATOR = "the modeller of the object, by eye, before any importance measure existed"
+NOTES = (
+    "Important means: varied with its group, a person sees another object of the class. Directions of extrusions are"
+    " not called important where they would turn left and right the same way."
+)
 SIDEWAYS = 0.15  # Table 1 varies the direction of an extrusion with rho > 0.15 z
 
 
@@ -72,7 +77,7 @@ class Annotation:
     judgements: tuple[Judgement, ...]
     groups: tuple[Group, ...]
     annotator: str = ANNOTATOR
-    notes: str = ""
+    notes: str = NOTES
 
     @property
     def important(self) -> frozenset[Variation]:
@@ -166,7 +171,7 @@ class AnnotatingRecorder(Recorder):
         if direction:
             self._heading = {**self._heading, "angle": (direction, direction_important)}
 
-    def annotation(self, notes: str = "") -> Annotation:
+    def annotation(self) -> Annotation:
         """Return the annotation of everything recorded; labels that occur more than once become groups."""
         alike: dict[tuple[str, str, str], list[Variation]] = {}
         for judgement in self._judgements:
@@ -174,7 +179,7 @@ class AnnotatingRecorder(Recorder):
             kind = self._operations[variation.operation].kind
             alike.setdefault((judgement.label, kind, variation.mode), []).append(variation)
         groups = tuple(Group(label, tuple(members)) for (label, _, _), members in alike.items() if len(members) > 1)
-        return Annotation(self.name, tuple(self._judgements), groups, notes=notes)
+        return Annotation(self.name, tuple(self._judgements), groups)
 
     def _do(self, operation: Operation, varies: dict[str, str]) -> None:
         super()._do(operation, varies)
@@ -188,10 +193,10 @@ class AnnotatingRecorder(Recorder):
             self._judgements.append(Judgement(Variation(index, mode), label, important))
 
 
-def publish_annotated(recorder: AnnotatingRecorder, folder: Path, notes: str = "") -> None:
+def publish_annotated(recorder: AnnotatingRecorder, folder: Path) -> None:
     """Write the model, its picture and ``annotations.json``; raises what :func:`publish` raises, and ModelError."""
     model = recorder.build()
-    annotation = recorder.annotation(notes)
+    annotation = recorder.annotation()
     annotation.check(model)
     (folder / ANNOTATIONS).write_text(annotation.to_json(), encoding="utf-8")
     publish(model, folder)

@@ -88,7 +88,7 @@ def _fuselage(r: AnnotatingRecorder) -> tuple[Component, Element, list[Element]]
     joint = r.vertices_of(body.bottom)
     r.judge("slimness of the rear", important=False)
     r.scale(body.bottom, 0.85, "uv")
-    r.judge("length of the tail", important=False)
+    r.judge("length of the rear", important=True)
     r.extrude(body.bottom, TAIL, length="rear_length")
     r.judge("thickness of the tail", important=False)
     r.scale(body.bottom, 0.35, "uv")

@@ -76,12 +76,12 @@ def _hull(r: AnnotatingRecorder) -> list[list[Element]]:
     r.judge("length amidships", important=True)
     r.scale(put(hull.whole), MIDDLE, "u", size="middle_length")
     midship = [r.vertices_of(face) for face in (fore, aft)]
-    r.judge("length of the fore body", important=True)
+    r.judge("length of the fore and the after body", important=True)
     r.extrude(fore, FORE, length="end_length")
     shoulder = r.vertices_of(fore)
     r.judge("length of the bow", important=True)
     r.extrude(fore, BOW, length="bow_length")
-    r.judge("length of the after body", important=True)
+    r.judge("length of the fore and the after body", important=True)
     r.extrude(aft, AFT, length="end_length")
     quarter = r.vertices_of(aft)
     r.judge("length of the stern", important=False)
@@ -97,8 +97,8 @@ def _hull(r: AnnotatingRecorder) -> list[list[Element]]:
             r.scale(put(*ring), width, "v", size="stern_width")
         else:
             r.scale(put(*ring), width, "v")
-    for label, ring in zip(("bow", "shoulder", "midship", "midship", "quarter", "stern"), sections, strict=True):
-        r.judge(f"width of the bottom at the {label}", important=label == "midship")
+    r.judge("width of the bottom", important=True)
+    for ring in sections:
         r.scale(put(*_half(r, ring, -1)), BOTTOM, "v", size="bottom_width")
     r.judge("beam", important=True)
     r.scale(put(hull.whole), BEAM, "v", size="beam")
@@ -108,8 +108,8 @@ def _hull(r: AnnotatingRecorder) -> list[list[Element]]:
     push(r, _half(r, sections[0], 1), (RAKE, 0.0, 0.0), length="bow_rake")
     r.judge("rise of the stern's bottom", important=False)
     push(r, _half(r, sections[5], -1), (0.0, 0.0, 0.45 * DEPTH), length="depth")
-    for ring, share, label in ((sections[0], 1.0, "bow"), (sections[1], 0.3, "bow"), (sections[5], 0.6, "stern")):
-        r.judge(f"rise of the deck towards the {label}", important=label == "bow")
+    r.judge("rise of the deck towards bow and stern", important=False)
+    for ring, share in ((sections[0], 1.0), (sections[1], 0.3), (sections[5], 0.6)):
         push(r, _half(r, ring, 1), (0.0, 0.0, share * SHEER), length="sheer")
     bottoms = {v.id for ring in sections for v in _half(r, ring, -1)}
     rim = {e for v in r.vertices_of(hull.whole) if v.id not in bottoms for e in r.mesh.edges_of_vertex(v.id)}
