@@ -1,0 +1,1 @@
+"""The procedural model ``bicycle_mountain``: see build.py."""
