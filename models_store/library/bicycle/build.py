@@ -1,4 +1,4 @@
-"""Models a bicycle with a diamond frame: touring, racing or mountain bicycle by its handlebars, tyres and proportions."""
+"""Models a bicycle with a diamond frame: touring, racing or mountain bicycle by its handlebars and tyres."""
 
 from pathlib import Path
 

@@ -259,10 +259,8 @@ def declare_handlebars(recorder: Recorder) -> None:
 def transmission(recorder: Recorder, skeleton: Skeleton) -> list[Component]:
     """A chain or a chain guard on the right side, from the bottom bracket to the rear axle."""
     runs = [
-        skeleton.tube(
-            "bottom", "rear", 0.012, side=-0.045, from_start=(0.0, 0.085 * up), from_end=(0.0, 0.03 * up), sides=4
-        )
-        for up in (1.0, -1.0)
+        skeleton.tube("bottom", "rear", 0.012, side=-0.045, from_start=(0.0, at_ring), from_end=(0.0, at_hub), sides=4)
+        for at_ring, at_hub in ((0.085, 0.03), (-0.085, -0.03))
     ]
     guard = skeleton.tube("bottom", "rear", (0.2, 0.1), side=-0.052, from_start=(0.10, 0.0), sides=4, crease="all")
     recorder.scale(guard.body(), 0.1, "v")

@@ -52,7 +52,7 @@ def build() -> ProceduralModel:
 def _basket(recorder: Recorder, clamp: Target) -> None:
     """A bucket of thin walls before the handlebars."""
     sections = [Section(-0.02, 0.34, 0.40), Section(0.20, 0.26, 0.32)]
-    bucket = beam(recorder, "-z", sections, crease="all", offset=(0.19, 0.0, 0.0), anchors=clamp)
+    bucket = beam(recorder, "-z", sections, crease="all", offset=(0.18, 0.0, 0.06), anchors=clamp)
     opening = bucket.component.top
     recorder.extrude(opening, 0.0)
     recorder.scale(opening, 0.92, "uv")

@@ -48,20 +48,8 @@ def build() -> ProceduralModel:
     anchor = lower(recorder, receiver, 1, 2)
     guard = trigger_guard(recorder, anchor, 0.066, 0.046)
     lever = trigger(recorder, anchor, 0.030, along=-0.004)
-    bodies: tuple[Loft | Component, ...] = (
-        receiver,
-        handguard,
-        barrel,
-        *before,
-        grip,
-        *magazines,
-        *stocks,
-        *above,
-        *below,
-        guard,
-        lever,
-    )
-    recorder.scale(whole(*bodies), 1.0, "v", size="thickness")
+    bodies = whole(receiver, handguard, barrel, *before, grip, *magazines, *stocks, *above, *below, guard, lever)
+    recorder.scale(bodies, 1.0, "v", size="thickness")
     recorder.symmetry(mirrors=("y",))
     return recorder.build()
 
