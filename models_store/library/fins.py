@@ -89,6 +89,7 @@ def fan(
     ]
     body = loft(recorder, "x", sections, sides=FAN_SIDES, offset=offset, anchors=[anchor] if anchor else ())
     _sharpen(recorder, body, across)
+    _divide_end(recorder, body, across)
     recorder.rotate(body.body(hinge=0), 180.0, "z")
     return Fan(body, across)
 
@@ -103,6 +104,14 @@ def _sharpen(recorder: Recorder, body: Loft, across: Axis) -> None:
             line = [ring[end] for ring in in_order]
             edges += [Element("edge", recorder.mesh.edge_between(a.id, b.id)) for a, b in pairwise(line)]
     recorder.mark_sharp(*edges)
+
+
+def _divide_end(recorder: Recorder, body: Loft, across: Axis) -> None:
+    """Cut the end face of a fan into strips, so that a fork is not filled."""
+    place = "xyz".index(across)
+    ring = sorted(body.rings[-1][0], key=lambda v: float(recorder.positions(v)[0, place]))
+    for start, end in zip(ring[1:-1:2], ring[2:-1:2], strict=True):
+        recorder.connect(start, end)
 
 
 def with_parts(targets: Sequence[Target], *parts: Loft) -> list[Target]:
