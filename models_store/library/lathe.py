@@ -13,13 +13,16 @@ Ring = tuple[Element, ...]
 
 
 class Lathe:
-    """Raises one face of a component ring by ring."""
+    """Raises the top of a component ring by ring, or sinks its bottom: then ``bottom`` is the ring where it began."""
 
-    def __init__(self, recorder: Recorder, component: Component) -> None:
+    def __init__(self, recorder: Recorder, component: Component, *, downwards: bool = False) -> None:
+        first, last = component.bottom, component.top
+        if downwards:
+            first, last = last, first
         self._recorder = recorder
-        self.face = component.top
-        self.bottom: Ring = tuple(recorder.vertices_of(component.bottom))
-        self.top: Ring = tuple(recorder.vertices_of(component.top))
+        self.face = last
+        self.bottom: Ring = tuple(recorder.vertices_of(first))
+        self.top: Ring = tuple(recorder.vertices_of(last))
 
     def rise(self, by: float, *, length: str = "") -> Ring:
         """Extrude by a distance (below 0: back down, for an inner wall) and return the new ring.
