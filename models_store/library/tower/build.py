@@ -18,7 +18,7 @@ TAPER, SETBACK = 0.94, 0.88
 CORBEL, OVERHANG, GALLERY = 0.7, 1.25, 1.6
 ROOF, MAST, MAST_WIDTH = 5.0, 4.0, 0.35
 PODIUM, PODIUM_HEIGHT = 7.5, 0.8
-MERLON = (0.16, 0.2, 1.0)  # shares of the tower's width, metres
+MERLON = (0.18, 0.18, 1.0)  # shares of the tower's width, metres
 LEDGE = 0.15
 
 
@@ -26,6 +26,7 @@ def model() -> AnnotatingRecorder:
     """Model the tower."""
     r = AnnotatingRecorder("tower", "tower", description="A tower of three stages with a gallery and a roof.")
     r.choice("plan", "Plan", ("round", "square", "octagonal"))
+    r.choice("roof", "Roof", ("pointed", "dome", "battlements", "flat"))
     r.parameter("width", "Width at the foot", 0.4, 2.0, unit="m", base_value=WIDTH)
     r.parameter("lower_height", "Height of the lower stage", 0.3, 2.0, unit="m", base_value=STAGES[0])
     r.parameter("middle_height", "Height of the middle stage", 0.2, 2.5, unit="m", base_value=STAGES[1])
@@ -34,7 +35,6 @@ def model() -> AnnotatingRecorder:
     r.parameter("setback", "Width of a stage (of the one below)", 0.65, 1.1, base_value=SETBACK)
     r.parameter("overhang", "Width of the gallery (of the stage below)", 0.75, 1.4, base_value=OVERHANG)
     r.parameter("gallery_height", "Gallery height", 0.2, 2.2, unit="m", base_value=GALLERY)
-    r.choice("roof", "Roof", ("pointed", "dome", "battlements", "flat"))
     r.parameter("roof_height", "Roof height", 0.25, 2.6, unit="m", base_value=ROOF, active_when=[when("roof", 1, 2)])
     r.switch("mast", "Mast")
     r.parameter("mast_length", "Mast length", 0.25, 2.5, unit="m", base_value=MAST, active_when=[when("mast", 1)])
@@ -174,7 +174,7 @@ def _battlements(r: AnnotatingRecorder, top: Element, corners: float) -> list[Co
 
 def _mast(r: AnnotatingRecorder, shaft: Component) -> Component:
     """A pole that stands on the gallery and shows above whatever roof there is."""
-    mast = r.prism(6, control_diameter(MAST_WIDTH, 6), 0.1, offset=(0.0, 0.0, -0.1), anchor=put(shaft.top))
+    mast = r.prism(8, control_diameter(MAST_WIDTH, 8), 0.1, offset=(0.0, 0.0, -0.1), anchor=put(shaft.top))
     r.judge("height of the roof at the mast", important=False)
     r.extrude(mast.top, ROOF, length="roof_height")
     r.judge("mast length", important=True)
