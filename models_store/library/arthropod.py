@@ -25,6 +25,7 @@ class LegShape:
     Attributes:
         raise_deg: how far thighs rise from the horizontal; knee and ankle bend down from there.
         inset: how far the root lies inside the body, from where it is anchored.
+        prefix, label: what its parameters begin with, for animals with legs of two kinds.
     """
 
     length: float
@@ -39,6 +40,8 @@ class LegShape:
     knee_range: Range = (0.2, 1.5)
     ankle_range: Range = (-0.8, 2.0)
     spread_range: Range = (0.3, 1.35)
+    prefix: str = ""
+    label: str = ""
 
 
 @dataclass(frozen=True)
@@ -84,44 +87,50 @@ def legs(recorder: Recorder, shape: LegShape, stations: Sequence[Station]) -> li
         loft(recorder, "y", sections, sides=LEG_SIDES, offset=(0.0, -shape.inset, 0.0), anchors=station.anchors)
         for station in stations
     ]
-    every = range(len(sections))
-    recorder.scale([t for p in pairs for t in p.sections(*every)], 1.0, "uz", size="leg_thickness")
-    recorder.scale([t for p in pairs for t in p.sections(1, 3)], 1.0, "uz", size="leg_bulge")
-    recorder.scale([t for p in pairs for t in p.body(hinge=0)], 1.0, "v", size="leg_length")
-    recorder.scale(pairs[0].body(hinge=0), 1.0, "v", size="front_leg_length")
-    recorder.scale(pairs[-1].body(hinge=0), 1.0, "v", size="rear_leg_length")
-    _bend(recorder, pairs, 0, shape.raise_deg, "leg_raise")
-    _bend(recorder, pairs, KNEE, -shape.knee_deg, "knee_bend")
-    _bend(recorder, pairs, ANKLE, -shape.ankle_deg, "ankle_bend")
+    name, every = shape.prefix, range(len(sections))
+    recorder.scale([t for p in pairs for t in p.sections(*every)], 1.0, "uz", size=f"{name}leg_thickness")
+    recorder.scale([t for p in pairs for t in p.sections(1, 3)], 1.0, "uz", size=f"{name}leg_bulge")
+    recorder.scale([t for p in pairs for t in p.body(hinge=0)], 1.0, "v", size=f"{name}leg_length")
+    if len(pairs) > 1:
+        for place, pair in (("front", pairs[0]), ("rear", pairs[-1])):
+            label = f"{shape.label}Length of the {place} legs beside the others".capitalize()
+            recorder.parameter(f"{place}_{name}leg_length", label, 0.7, 1.4)
+            recorder.scale(pair.body(hinge=0), 1.0, "v", size=f"{place}_{name}leg_length")
+    _bend(recorder, pairs, 0, shape.raise_deg, f"{name}leg_raise")
+    _bend(recorder, pairs, KNEE, -shape.knee_deg, f"{name}knee_bend")
+    _bend(recorder, pairs, ANKLE, -shape.ankle_deg, f"{name}ankle_bend")
     for pair, station in zip(pairs, stations, strict=True):
         if station.heading_deg:
-            recorder.rotate(pair.body(hinge=0), -station.heading_deg, "z", angle="leg_spread")
+            recorder.rotate(pair.body(hinge=0), -station.heading_deg, "z", angle=f"{name}leg_spread")
     swept = [t for p in pairs for t in p.body(hinge=0)]
     recorder.rotate(swept, -20.0, "z")
-    recorder.rotate(swept, 20.0, "z", angle="leg_sweep")
+    recorder.rotate(swept, 20.0, "z", angle=f"{name}leg_sweep")
     return pairs
 
 
 def _declare(recorder: Recorder, shape: LegShape) -> None:
-    recorder.parameter("leg_length", "Leg length", *shape.length_range, base_value=shape.length)
-    recorder.parameter("leg_thickness", "Leg thickness", *shape.thickness_range, base_value=shape.thickness)
-    recorder.parameter("leg_bulge", "Thickness of thigh and shin between the joints", 0.5, 2.0)
-    recorder.parameter("front_leg_length", "Length of the front legs beside the others", 0.7, 1.4)
-    recorder.parameter("rear_leg_length", "Length of the rear legs beside the others", 0.7, 1.4)
-    recorder.parameter("leg_raise", "Rise of the thighs (deg)", *shape.raise_range, base_value=shape.raise_deg)
-    recorder.parameter("knee_bend", "Bend of the knees (deg)", *shape.knee_range, base_value=shape.knee_deg)
+    for name, label, limits, base_value in (
+        ("leg_length", "leg length", shape.length_range, shape.length),
+        ("leg_thickness", "leg thickness", shape.thickness_range, shape.thickness),
+        ("leg_bulge", "leg thickness between the joints", (0.5, 2.0), None),
+        ("leg_raise", "rise of the thighs (deg)", shape.raise_range, shape.raise_deg),
+        ("knee_bend", "bend of the knees (deg)", shape.knee_range, shape.knee_deg),
+        ("ankle_bend", "bend of the ankles (deg)", shape.ankle_range, shape.ankle_deg),
+        ("leg_spread", "spread of the legs forwards and backwards", shape.spread_range, None),
+        ("leg_sweep", "legs turned backwards (deg)", (0.0, 2.0), 20.0),
+    ):
+        recorder.parameter(
+            f"{shape.prefix}{name}", f"{shape.label}{label}".capitalize(), *limits, base_value=base_value
+        )
     _keep_feet_low(recorder, shape)
-    recorder.parameter("ankle_bend", "Bend of the ankles (deg)", *shape.ankle_range, base_value=shape.ankle_deg)
-    recorder.parameter("leg_spread", "Spread of the legs forwards and backwards", *shape.spread_range)
-    recorder.parameter("leg_sweep", "Legs turned backwards (deg)", 0.0, 2.0, base_value=20.0)
 
 
 def _keep_feet_low(recorder: Recorder, shape: LegShape) -> None:
     """The higher the thighs rise the more the knees bend, or feet end up in the air; and shins never curl under."""
     per_raise = 1.35 * shape.raise_deg / shape.knee_deg
-    recorder.limit("knee_bend", minimum=("leg_raise", -8.0 / shape.knee_deg, per_raise))
+    recorder.limit(f"{shape.prefix}knee_bend", minimum=(f"{shape.prefix}leg_raise", -8.0 / shape.knee_deg, per_raise))
     as_steep = (STEEPEST_SHIN_DEG / shape.knee_deg, shape.raise_deg / shape.knee_deg)
-    recorder.limit("knee_bend", maximum=("leg_raise", *as_steep))
+    recorder.limit(f"{shape.prefix}knee_bend", maximum=(f"{shape.prefix}leg_raise", *as_steep))
 
 
 def _bend(recorder: Recorder, pairs: Sequence[Loft], joint: int, angle_deg: float, angle: str) -> None:

@@ -1,0 +1,1 @@
+"""The procedural model ``spider_cricket``: see build.py."""
