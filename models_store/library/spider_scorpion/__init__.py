@@ -1,0 +1,1 @@
+"""The procedural model ``spider_scorpion``: see build.py."""
