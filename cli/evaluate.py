@@ -18,7 +18,7 @@ from cli.evaluation_options import (
     names_in,
     threads,
 )
-from models_store.library.shipped import list_shipped, load_shipped
+from cli.sources import load_all_compiled, shipped_by_class
 from shapewright.errors import EvaluationError
 from shapewright.progress import PartialProgress
 from shapewright.whole_file import write_whole
@@ -26,7 +26,6 @@ from shapewright.whole_file import write_whole
 if TYPE_CHECKING:
     from shapewright.evaluation.coverage import Coverage
     from shapewright.evaluation.metrics import ClassCoverage
-    from shapewright.modeling import CompiledModel
 
 app = typer.Typer(rich_markup_mode="rich", no_args_is_help=True)
 
@@ -88,7 +87,7 @@ def coverage(
     items = read_dataset(dataset)
     labels = {item.class_name for item in items}
     queried, compared = _chosen_classes(labels, names_in(classes), names_in(against))
-    models = _compiled(compared)
+    models = {name: load_all_compiled(members) for name, members in compared.items()}
     chosen = spread(of_classes(items, queried), limit)
     with threads(jobs) as used, shown_progress("coverage") as progress:
         measured = measure_coverage(
@@ -139,9 +138,7 @@ def _chosen_classes(
     labels: set[str], classes: list[str] | None, against: list[str] | None
 ) -> tuple[list[str], dict[str, list[str]]]:
     """Return the classes whose meshes are taken, and the shipped models of each class that is compared."""
-    by_class: dict[str, list[str]] = {}
-    for name in list_shipped():
-        by_class.setdefault(load_shipped(name).class_name, []).append(name)
+    by_class = shipped_by_class()
     for option, chosen in (("--classes", classes), ("--against", against)):
         for name in chosen or []:
             if name not in by_class:
@@ -153,10 +150,6 @@ def _chosen_classes(
         raise EvaluationError("no mesh of the dataset has the class of a shipped model", where="--dataset")
     rivals = [name for name in by_class if name in (labels if against is None else against)]
     return queried, {name: by_class[name] for name in by_class if name in queried or name in rivals}
-
-
-def _compiled(by_class: dict[str, list[str]]) -> "dict[str, list[CompiledModel]]":
-    return {name: [load_shipped(model).compile() for model in models] for name, models in by_class.items()}
 
 
 def _meshes(measured: "Coverage") -> list[dict[str, Any]]:

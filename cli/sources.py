@@ -47,6 +47,14 @@ def load_all_compiled(sources: list[str] | None) -> "list[CompiledModel]":
     return [load_compiled(source) for source in (sources or list_shipped())]
 
 
+def shipped_by_class() -> dict[str, list[str]]:
+    """Return the names of the shipped models by class; their documents are read, not checked."""
+    by_class: dict[str, list[str]] = {}
+    for name, document in list_shipped().items():
+        by_class.setdefault(str(json.loads(document.read_bytes())["class"]), []).append(name)
+    return by_class
+
+
 def read_object(file: Path) -> dict[str, Any]:
     """Read a JSON file that holds one object.
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from command_line import shapewright
 
-VERBS = ("models", "instance", "render", "train", "classify", "estimate", "serve", "demo")
+VERBS = ("models", "instance", "render", "train", "classify", "estimate", "evaluate", "serve", "demo")
 
 
 def test_help_names_every_verb() -> None:

@@ -65,3 +65,30 @@ def test_validate_says_what_is_wrong_and_where(lamp: Path, tmp_path: Path) -> No
 
 def test_an_unknown_model_lists_those_that_ship() -> None:
     assert "neither a file nor a shipped model" in shapewright("models", "show", "teapot").refused()
+
+
+def test_validate_names_findings_with_the_values_that_show_them(lamp: Path, tmp_path: Path) -> None:
+    document = json.loads(lamp.read_text())
+    document["symmetry"]["mirrors"] = ["x"]
+    lying = tmp_path / "lying.json"
+    document["operations"].append(
+        {"op": "drag", "targets": [{"elements": ["f1"], "frame": "world", "image": []}], "rho": 0.5}
+    )
+    lying.write_text(json.dumps(document))
+    outcome = shapewright("models", "validate", lying, lamp, "--variations", 5, "--jobs", 2, "--json")
+    assert outcome.status == 2
+    bad, good = outcome.document["files"]
+    assert good["valid"]
+    assert not bad["valid"]
+    assert all(good["checks"].values())
+    assert [check for check, holds in bad["checks"].items() if not holds] == ["symmetry"]
+    assert bad["findings"][0]["where"] == "mirror x"
+    told = shapewright("models", "validate", lying, "--variations", 5)
+    assert told.status == 2
+    assert "1 findings (2 parameters, 5 variations; replay topology SYMMETRY! finite" in told.stdout
+    assert "symmetry: mirror x: component c0 is off by" in told.stderr
+
+
+def test_validate_takes_names_or_all() -> None:
+    assert "--all" in shapewright("models", "validate").refused()
+    assert "--all" in shapewright("models", "validate", "table", "--all").refused()

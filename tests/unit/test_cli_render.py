@@ -41,3 +41,16 @@ def test_refusals(lamp: Path, tmp_path: Path) -> None:
     empty.write_bytes(b"")
     assert "empty" in shapewright("render", empty, "-o", tmp_path / "a.png").refused()
     assert not (tmp_path / "a.png").exists()
+
+
+def test_a_contact_sheet_has_a_picture_of_everything(lamp: Path, tmp_path: Path) -> None:
+    few, more = tmp_path / "few.png", tmp_path / "more.png"
+    document = shapewright(
+        "render", lamp, "-o", few, "--contact-sheet", "--size", 64, "--variations", 3, "--json"
+    ).document
+    shapewright("render", lamp, "-o", more, "--contact-sheet", "--size", 64, "--variations", 9)
+    with Image.open(few) as sheet, Image.open(more) as longer:
+        assert sheet.size == (document["width"], document["height"])
+        assert sheet.width == longer.width == 8 * 70 + 6
+        assert longer.height - sheet.height == 64 + 6 + 36
+    assert "only a model" in shapewright("render", "mesh.off", "-o", tmp_path / "a.png", "--contact-sheet").refused()
