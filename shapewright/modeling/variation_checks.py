@@ -108,22 +108,22 @@ def check_variations(
         finite = np.isfinite(chunk).all(axis=(1, 2))
         tally("finite", "", start + np.flatnonzero(~finite), np.zeros(int((~finite).sum())))
         rows = start + np.flatnonzero(finite)
-        points = chunk[finite]
         if len(rows) == 0:
             continue
-        extents = np.ptp(points, axis=1)
-        diagonals = np.linalg.norm(extents, axis=1)
+        xyz = np.ascontiguousarray(chunk[finite].transpose(2, 0, 1))  # what runs over vertices is many times faster
+        extents = xyz.max(axis=2) - xyz.min(axis=2)
+        diagonals = np.linalg.norm(extents, axis=0)
         if start == 0 and finite[0]:
             base_diagonal = float(diagonals[0])
         relative = diagonals / (base_diagonal or 1.0)
         tally("extent", "small", *_below(rows, relative, DIAGONALS[0]))
         tally("extent", "large", *_below(rows, -relative, -DIAGONALS[1]))
-        flat = np.divide(extents.min(axis=1), diagonals, out=np.zeros(len(rows)), where=diagonals > 0)
+        flat = np.divide(extents.min(axis=0), diagonals, out=np.zeros(len(rows)), where=diagonals > 0)
         tally("extent", "flat", *_below(rows, flat, LEAST_EXTENT))
         there = present[rows]
-        areas, volumes = _areas_and_volumes(points, surface)
+        areas, volumes = _areas_and_volumes(xyz, surface)
         least = np.minimum.reduceat(areas, surface.first, axis=1) / np.maximum(diagonals, 1e-300)[:, None] ** 2
-        gaps = _gaps(points, there, surface) / np.maximum(diagonals, 1e-300)[:, None]
+        gaps = _gaps(xyz, diagonals, there, surface) / np.maximum(diagonals, 1e-300)[:, None]
         for k in range(surface.count):
             mine = there[:, k]
             tally("faces", surface.names[k], *_below(rows[mine], least[mine, k], LEAST_AREA))
@@ -155,11 +155,10 @@ def _below(
 
 
 def _areas_and_volumes(
-    points: Float[np.ndarray, "C V 3"], surface: _Surface
+    xyz: Float[np.ndarray, "3 C V"], surface: _Surface
 ) -> tuple[Float[np.ndarray, "C F"], Float[np.ndarray, "C K"]]:
     """Area of each triangle and volume of each component; the latter means something where it is closed."""
-    centred = points - points.mean(axis=1, keepdims=True)
-    x, y, z = np.ascontiguousarray(centred.transpose(2, 0, 1))
+    x, y, z = xyz - xyz.mean(axis=2, keepdims=True)
     ia, ib, ic = surface.triangles.T
     ax, ay, az = x[:, ia], y[:, ia], z[:, ia]
     ux, uy, uz = x[:, ib] - ax, y[:, ib] - ay, z[:, ib] - az
@@ -171,7 +170,10 @@ def _areas_and_volumes(
 
 
 def _gaps(
-    points: Float[np.ndarray, "C V 3"], there: Bool[np.ndarray, "C K"], surface: _Surface
+    xyz: Float[np.ndarray, "3 C V"],
+    diagonals: Float[np.ndarray, " C"],
+    there: Bool[np.ndarray, "C K"],
+    surface: _Surface,
 ) -> Float[np.ndarray, "C K"]:
     """How far the bounding box of each component is from the nearest of another group that it does not touch.
 
@@ -181,12 +183,11 @@ def _gaps(
     gaps = np.zeros(there.shape)
     if surface.count == 1:
         return gaps
-    ordered = points[:, surface.vertex_order]
-    low = np.minimum.reduceat(ordered, surface.first_vertex, axis=1)
-    high = np.maximum.reduceat(ordered, surface.first_vertex, axis=1)
-    apart = np.maximum(low[:, :, None] - high[:, None], 0.0) + np.maximum(low[:, None] - high[:, :, None], 0.0)
-    distance = np.linalg.norm(apart, axis=3)
-    diagonals = np.linalg.norm(np.ptp(points, axis=1), axis=1)
+    ordered = xyz[:, :, surface.vertex_order]
+    low = np.minimum.reduceat(ordered, surface.first_vertex, axis=2)
+    high = np.maximum.reduceat(ordered, surface.first_vertex, axis=2)
+    apart = np.maximum(low[..., :, None] - high[..., None, :], 0.0)
+    distance = np.linalg.norm(apart + apart.swapaxes(2, 3), axis=0)
     for row, mine in enumerate(there):
         chosen = np.flatnonzero(mine)
         away = distance[row][np.ix_(chosen, chosen)]
