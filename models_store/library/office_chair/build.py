@@ -57,7 +57,7 @@ def _declare(r: Recorder) -> None:
     r.parameter("seat_depth", "Seat depth", 0.8, 1.25, unit="m", base_value=SEAT_DEPTH)
     r.parameter("seat_thickness", "Seat thickness", 0.5, 1.9, unit="m", base_value=SEAT_THICKNESS)
     r.parameter("seat_front", "Seat front (width, relative to the seat's)", 0.75, 1.08, base_value=0.95)
-    r.parameter("front_drop", "Drop of the seat's front edge", -1.0, 3.0, unit="m", base_value=FRONT_DROP)
+    r.parameter("corners", "Fullness of the ends of seat and back (1.25 is square)", 0.8, 1.25)
     r.parameter("back_height", "Back height", 0.6, 1.4, unit="m", base_value=BACK_HEIGHT)
     r.parameter("back_width", "Back width", 0.75, 1.25, unit="m", base_value=BACK_WIDTH)
     r.parameter("back_thickness", "Back thickness", 0.4, 2.0, unit="m", base_value=BACK_THICKNESS)
@@ -74,8 +74,9 @@ def _seat(r: Recorder, plate_top: Element) -> Loft:
     seat = cushion(r, "x", sections, offset=(0.0, 0.0, PLATE_Z + PLATE_THICKNESS + SEAT_THICKNESS / 2 - 0.015))
     r.scale(Target((seat.component.whole,), "world", pivot=(plate_top,)), 1.0, "z", size="seat_thickness")
     r.scale(seat.sections(3, 4), 1.0, "v", size="seat_front")
-    move(r, seat.sections(3), (0.0, 0.0, -FRONT_DROP / 2), length="front_drop")
-    move(r, seat.sections(4), (0.0, 0.0, -FRONT_DROP), length="front_drop")
+    r.scale(seat.sections(0, 4), 1.0, "vz", size="corners")
+    move(r, seat.sections(3), (0.0, 0.0, -FRONT_DROP / 2))
+    move(r, seat.sections(4), (0.0, 0.0, -FRONT_DROP))
     return seat
 
 
@@ -85,6 +86,7 @@ def _back(r: Recorder) -> tuple[Loft, Loft]:
     back = cushion(r, "z", sections, offset=(BACK_X, 0.0, BACK_Z))
     every = [target for number in range(len(BACK)) for target in back.sections(number)]
     r.scale(every, 1.0, "u", size="back_thickness")
+    r.scale(back.sections(0, 5), 1.0, "uv", size="corners")
     r.scale(back.body(), 1.0, "v", size="back_width")
     r.scale(back.sections(4, 5), 1.0, "v", size="back_top")
     r.scale(back.sections(0, 1), 1.0, "v", size="back_bottom")
