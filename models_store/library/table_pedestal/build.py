@@ -97,7 +97,7 @@ def _declare(r: Recorder) -> None:
     r.parameter("claw_thickness", "Claw thickness", 0.5, 1.5, unit="m", base_value=CLAW_THICKNESS, active_when=claws)
     r.parameter("claw_arch", "Claw arch", -0.5, 2.5, unit="m", base_value=CLAW_ARCH, active_when=claws)
     r.parameter("barrel_width", "Barrel width", 0.5, 1.3, unit="m", base_value=BARREL_WIDTH, active_when=barrel)
-    r.limit("barrel_width", minimum=("top_width", 0.0, 0.65))
+    r.limit("barrel_width", minimum=("top_width", 0.0, 0.6), maximum=("top_width", 0.0, 1.55))
     r.parameter("barrel_waist", "Barrel waist (relative to its width)", 0.6, 1.25, base_value=1.0, active_when=barrel)
 
 
