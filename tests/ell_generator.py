@@ -7,24 +7,14 @@ import trimesh
 
 from shapewright.distances.alignment import Pose
 from shapewright.mesh import TriangleMesh
-
-
-@dataclass(frozen=True)
-class EllParameter:
-    name: str
-    minimum: float = 0.5
-    maximum: float = 2.0
-    unit: str | None = "mm"
-    base_value: float | None = 10.0
-
-    @property
-    def label(self) -> str:
-        return self.name.replace("_", " ").title()
+from shapewright.modeling.parameter import Parameter, ParameterTarget
+from shapewright.modeling.parameter_space import ParameterSpace
 
 
 @dataclass(frozen=True)
 class EllModel:
-    parameters: tuple[EllParameter, ...]
+    parameters: tuple[Parameter, ...]
+    name: str = "ell"
     digest: str = "an uneven L"
 
 
@@ -32,7 +22,13 @@ class EllGenerator:
     """Closed boxes of 98 vertices each; ``parameters`` of length, width and height vary, the others stay 1."""
 
     def __init__(self, *parameters: str) -> None:
-        self.model = EllModel(tuple(EllParameter(name) for name in parameters))
+        self.model = EllModel(
+            tuple(
+                Parameter(name, name.title(), 0.5, 2.0, (ParameterTarget(0, "size"),), "mm", 10.0)
+                for name in parameters
+            )
+        )
+        self.space = ParameterSpace(self.model.parameters)
         self.minimum = np.array([parameter.minimum for parameter in self.model.parameters])
         self.maximum = np.array([parameter.maximum for parameter in self.model.parameters])
         box = trimesh.creation.box().subdivide().subdivide()
@@ -54,6 +50,9 @@ class EllGenerator:
         foot = self._corner_box * np.stack([3.0 * length, 1.2 * width, 0.5 * one], axis=1)[:, None]
         tower = self._corner_box * np.stack([0.7 * one, 0.5 * one, 1.6 * height], axis=1)[:, None]
         return np.concatenate([foot, tower + np.array([0.0, 0.1, 0.4])], axis=1)
+
+    def instance(self, values: np.ndarray, steps: int = 2) -> TriangleMesh:
+        return TriangleMesh(self.surface_points(values[None], steps)[0], self.surface_triangles(steps))
 
     def mesh(self, values: np.ndarray, pose: Pose | None = None) -> TriangleMesh:
         points = self.surface_points(np.asarray(values, dtype=np.float64)[None])[0]

@@ -8,27 +8,19 @@ import numpy as np
 import structlog
 
 from models_store.errors import ArtifactError, ArtifactNotFoundError
-from shapewright.errors import Cancelled, EstimationError
+from shapewright.errors import EstimationError
 from shapewright.progress import Progress
 from workers.context import JobContext
 
 if TYPE_CHECKING:
     from shapewright.estimation import EstimationSettings, PanoramaBank
-    from shapewright.modeling import CompiledModel
+    from shapewright.estimation.generator import InstanceGenerator
 
 log = structlog.get_logger(__name__)
 
 
-class BankCancelled(Cancelled):
-    """The building was cancelled. ``bank`` holds the samples that were ready, ``None`` if there are none."""
-
-    def __init__(self, bank: "PanoramaBank | None") -> None:
-        super().__init__()
-        self.bank = bank
-
-
 def stored_bank(
-    context: JobContext, compiled: "CompiledModel", settings: "EstimationSettings"
+    context: JobContext, compiled: "InstanceGenerator", settings: "EstimationSettings"
 ) -> "PanoramaBank | None":
     """The bank that an estimation with these settings wants, mapped into memory; ``None`` if not there yet."""
     from shapewright.estimation import PanoramaBank
@@ -46,31 +38,22 @@ def stored_bank(
 
 
 def new_bank(
-    context: JobContext, compiled: "CompiledModel", settings: "EstimationSettings", progress: Progress
+    context: JobContext, compiled: "InstanceGenerator", settings: "EstimationSettings", progress: Progress
 ) -> "PanoramaBank":
-    """Build the bank, and keep it for the next query if there is room for it.
+    """Build the bank, and keep it for the next query if there is room for it; then it is mapped into memory.
 
     Raises:
         BankCancelled: the progress cancelled.
     """
-    from shapewright.estimation.bank import bank_chunks, joined
+    from shapewright.estimation import build_bank
 
     rng, _ = np.random.default_rng(settings.seed).spawn(2)  # as the estimator does without a bank
-    chunks: list[PanoramaBank] = []
-    pieces = bank_chunks(
-        compiled, settings.samples, rng, subdivision_steps=settings.subdivision_steps, progress=progress
-    )
-    try:
-        for chunk in pieces:
-            chunks.append(chunk)  # noqa: PERF402 - what is there when the generator is cancelled counts
-    except Cancelled:
-        raise BankCancelled(joined(chunks) if chunks else None) from None
-    bank = joined(chunks)
+    bank = build_bank(compiled, settings.samples, rng, progress, subdivision_steps=settings.subdivision_steps)
     _keep(context, bank_key(compiled, settings), bank)
-    return bank
+    return stored_bank(context, compiled, settings) or bank
 
 
-def bank_key(compiled: "CompiledModel", settings: "EstimationSettings") -> str:
+def bank_key(compiled: "InstanceGenerator", settings: "EstimationSettings") -> str:
     """The artefact key of a bank: everything that its content depends on."""
     from shapewright.estimation.bank import VERSION
 

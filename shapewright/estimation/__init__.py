@@ -1,6 +1,12 @@
 """Estimating the parameters of a query (paper section 3.3)."""
 
-from shapewright.estimation.bank import PanoramaBank, build_bank
+from shapewright.estimation.bank import BankCancelled, PanoramaBank, build_bank
+from shapewright.estimation.classes import (
+    ClassEstimation,
+    ClassEstimationCancelled,
+    ModelTried,
+    estimate_class,
+)
 from shapewright.estimation.estimate import estimate
 from shapewright.estimation.result import (
     Distances,
@@ -12,13 +18,18 @@ from shapewright.estimation.result import (
 from shapewright.estimation.settings import EstimationSettings
 
 __all__ = [
+    "BankCancelled",
+    "ClassEstimation",
+    "ClassEstimationCancelled",
     "Distances",
     "Estimation",
     "EstimationCancelled",
     "EstimationSettings",
+    "ModelTried",
     "PanoramaBank",
     "ParameterEstimate",
     "Stage",
     "build_bank",
     "estimate",
+    "estimate_class",
 ]

@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 from jaxtyping import Float, Float32
 
-from shapewright.errors import EstimationError
+from shapewright.errors import Cancelled, EstimationError
 from shapewright.estimation.generator import InstanceGenerator
 from shapewright.progress import NULL_PROGRESS, Progress
 
@@ -111,6 +111,14 @@ class PanoramaBank:
             raise EstimationError(f"the file is no bank or is damaged: {error}", where=source.name) from error
 
 
+class BankCancelled(Cancelled):
+    """The building was cancelled. ``bank`` holds the samples that were ready, ``None`` if there are none."""
+
+    def __init__(self, bank: PanoramaBank | None) -> None:
+        super().__init__("the building of the bank was cancelled")
+        self.bank = bank
+
+
 def bank_chunks(
     generator: InstanceGenerator,
     samples: int,
@@ -164,7 +172,7 @@ def build_bank(
     *,
     subdivision_steps: int = 2,
 ) -> PanoramaBank:
-    """Random instances (every parameter uniform in its range) and their descriptors.
+    """Random instances (every active parameter uniform in its range) and their descriptors.
 
     Args:
         generator: a compiled model.
@@ -174,11 +182,17 @@ def build_bank(
         subdivision_steps: of the instances.
 
     Raises:
+        BankCancelled: the progress cancelled.
         EstimationError: fewer than one sample.
     """
     rng = np.random.default_rng(0) if rng is None else rng
-    chunks = bank_chunks(generator, samples, rng, subdivision_steps=subdivision_steps, progress=progress)
-    return joined(list(chunks))
+    chunks: list[PanoramaBank] = []
+    try:
+        for chunk in bank_chunks(generator, samples, rng, subdivision_steps=subdivision_steps, progress=progress):
+            chunks.append(chunk)  # noqa: PERF402 - what is there when the generator is cancelled counts
+    except Cancelled:
+        raise BankCancelled(joined(chunks) if chunks else None) from None
+    return joined(chunks)
 
 
 def _write_aligned(archive: zipfile.ZipFile, name: str, array: Any) -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-from shapewright.distances.alignment import Pose
+from shapewright.distances.alignment import PointDistance, Pose
 from shapewright.distances.panorama import panorama_descriptor, panorama_distance
 from shapewright.distances.surface import SurfaceDistance, poisson_disk_points
 from shapewright.distances.zbuffer import ZBufferTarget
@@ -36,32 +36,31 @@ class Comparison:
         self.generator = generator
         self.settings = settings
         self.to_file = Pose(translation=normalization.translation, scale=normalization.scale).inverse()
-        self.triangles = generator.surface_triangles(settings.subdivision_steps)
         self.descriptor = panorama_descriptor(mesh.vertices, mesh.faces)
         self._surface = SurfaceDistance(poisson_disk_points(mesh, settings.surface_points, rng=rng))
         self._zbuffer = ZBufferTarget(mesh.vertices, mesh.faces, settings.image_size)
 
-    def points(self, values: Float[np.ndarray, " P"]) -> Float[np.ndarray, "V 3"]:
-        """Vertices of an instance, in model space."""
-        return np.asarray(self.generator.surface_points(values[None], self.settings.subdivision_steps)[0])
+    def instance(self, values: Float[np.ndarray, " P"]) -> TriangleMesh:
+        """An instance, in model space. Parts that it lacks are left out: means of vertices must not know them."""
+        return self.generator.instance(values, self.settings.subdivision_steps)
 
-    def panorama(self, points: Float[np.ndarray, "V 3"]) -> float:
+    def panorama(self, instance: TriangleMesh) -> float:
         """Panorama distance of an instance; any pose gives the same."""
-        return panorama_distance(self.descriptor, panorama_descriptor(points, self.triangles))
+        return panorama_distance(self.descriptor, panorama_descriptor(instance.vertices, instance.faces))
 
-    def surface(self, posed: Float[np.ndarray, "V 3"]) -> float:
-        """Surface distance of a posed instance."""
-        return float(self._surface(posed))
+    def surface(self, instance: TriangleMesh) -> PointDistance:
+        """The surface distance of an instance as a function of its posed vertices."""
+        return self._surface
 
-    def zbuffer(self, posed: Float[np.ndarray, "V 3"]) -> float:
-        """Normalised z-buffer distance of a posed instance."""
-        return self._zbuffer.distance(posed, self.triangles).normalized
+    def zbuffer(self, instance: TriangleMesh) -> PointDistance:
+        """The normalised z-buffer distance of an instance as a function of its posed vertices."""
+        return lambda posed: self._zbuffer.distance(posed, instance.faces).normalized
 
-    def distances(self, points: Float[np.ndarray, "V 3"], pose: Pose) -> Distances:
+    def distances(self, instance: TriangleMesh, pose: Pose) -> Distances:
         """All distances of an instance at a pose."""
-        posed = pose.apply(points)
-        zbuffer = self._zbuffer.distance(posed, self.triangles)
-        return Distances(self.panorama(points), self.surface(posed), zbuffer.normalized, zbuffer.raw)
+        posed = pose.apply(instance.vertices)
+        zbuffer = self._zbuffer.distance(posed, instance.faces)
+        return Distances(self.panorama(instance), self._surface(posed), zbuffer.normalized, zbuffer.raw)
 
     def initial_pose(self, points: Float[np.ndarray, "V 3"]) -> Pose:
         """The paper's initial normalisation of an instance.

@@ -1,8 +1,9 @@
-"""The one entry to every estimator."""
+"""The one entry to every estimator, for one model; :mod:`shapewright.estimation.classes` has the one for a class."""
 
+from shapewright.errors import Cancelled
 from shapewright.estimation.bank import PanoramaBank
 from shapewright.estimation.generator import InstanceGenerator
-from shapewright.estimation.result import Estimation
+from shapewright.estimation.result import Estimation, EstimationCancelled
 from shapewright.estimation.settings import EstimationSettings
 from shapewright.mesh import TriangleMesh
 from shapewright.progress import NULL_PROGRESS, Progress
@@ -35,3 +36,29 @@ def estimate(
 
     settings = settings or EstimationSettings()
     return ReferenceEstimator(query, compiled, settings, progress).run(bank)
+
+
+def nearest(
+    query: TriangleMesh, compiled: InstanceGenerator, settings: EstimationSettings, bank: PanoramaBank
+) -> Estimation:
+    """Take the nearest of a bank's instances as it is: the answer of an estimation cancelled at its first step.
+
+    Raises:
+        EstimationError: the bank belongs to another model.
+        MeshError: the query has no extent.
+    """
+    try:
+        return estimate(query, compiled, settings, progress=_OnlyTheFirstStep(), bank=bank)
+    except EstimationCancelled as cancelled:
+        if cancelled.best is None:  # it has a bank, so there is a nearest one
+            raise
+        return cancelled.best
+
+
+class _OnlyTheFirstStep:
+    """Lets an estimation begin and cancels it at its first step."""
+
+    def report(self, fraction: float, message: str) -> None:
+        """Cancel as soon as anything is done."""
+        if fraction > 0:
+            raise Cancelled

@@ -3,7 +3,9 @@
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
+
+from shapewright.mesh import TriangleMesh
 
 
 @runtime_checkable
@@ -34,10 +36,17 @@ class ParameterInfo(Protocol):
     def maximum(self) -> float:
         """Largest x."""
 
+    def named_options(self) -> list[tuple[float, str]]:
+        """Values and names of the options; none of a measure."""
+
 
 @runtime_checkable
 class ModelInfo(Protocol):
     """What tells one model from another."""
+
+    @property
+    def name(self) -> str:
+        """What people call it."""
 
     @property
     def digest(self) -> str:
@@ -49,12 +58,30 @@ class ModelInfo(Protocol):
 
 
 @runtime_checkable
+class ValueSpace(Protocol):
+    """What values mean together."""
+
+    def settle(self, values: Float[np.ndarray, "B P"]) -> Float[np.ndarray, "B P"]:
+        """Move rows into their ranges, options to whole numbers, what is not active to 1."""
+
+    def active(self, values: Float[np.ndarray, "B P"]) -> Bool[np.ndarray, "B P"]:
+        """Tell which parameters are active in settled rows."""
+
+    def ranges(self, values: Float[np.ndarray, "B P"]) -> tuple[Float[np.ndarray, "B P"], Float[np.ndarray, "B P"]]:
+        """Return the smallest and largest x of each parameter in settled rows."""
+
+
+@runtime_checkable
 class InstanceGenerator(Protocol):
-    """Generates instances that all share one topology."""
+    """Generates instances: in batches that share one topology, and alone without the parts that they lack."""
 
     @property
     def model(self) -> ModelInfo:
         """What is generated."""
+
+    @property
+    def space(self) -> ValueSpace:
+        """What depends on what."""
 
     @property
     def minimum(self) -> Float[np.ndarray, " P"]:
@@ -65,10 +92,13 @@ class InstanceGenerator(Protocol):
         """Largest values."""
 
     def random_values(self, rng: np.random.Generator, count: int) -> Float[np.ndarray, "B P"]:
-        """Rows of values, uniform in their ranges."""
+        """Settled rows of values, uniform in their ranges."""
 
     def surface_points(self, values: Float[np.ndarray, "B P"], steps: int) -> Float[np.ndarray, "B V 3"]:
-        """Vertices of each row's instance after subdivision."""
+        """Vertices of each row's instance after subdivision; parts that it lacks have no area."""
 
     def surface_triangles(self, steps: int) -> Int[np.ndarray, "F 3"]:
-        """Triangles of every instance."""
+        """Triangles of a batch."""
+
+    def instance(self, values: Float[np.ndarray, " P"], steps: int) -> TriangleMesh:
+        """One instance, without the parts that it lacks."""

@@ -12,15 +12,37 @@ from shapewright.progress import NULL_PROGRESS, Progress
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """Parameter values, their distance, and the pose it was measured at (None where the pose plays no part)."""
+    """Settled parameter values, their distance, and the pose it was measured at (None where the pose plays no part)."""
 
     values: Float[np.ndarray, " P"]
     distance: float
     pose: Pose | None = None
 
 
+Values = Float[np.ndarray, "B P"]
+
 Evaluate = Callable[[Float[np.ndarray, " P"], Candidate], Candidate]
 """Measures new values; the second argument is the incumbent, whose pose a realignment begins from."""
+
+
+@dataclass(frozen=True)
+class SearchSpace:
+    """Where a climb may go.
+
+    Args:
+        settle: brings rows into the space; what depends on a changed value follows it.
+        options: for each parameter the values it can have, none for a measure, which moves by steps.
+    """
+
+    settle: Callable[[Values], Values]
+    options: tuple[tuple[float, ...], ...]
+
+    def moved(self, values: Float[np.ndarray, " P"], column: int, x: float) -> Float[np.ndarray, " P"]:
+        """Return the values with another x of one parameter, settled."""
+        row = values.copy()
+        row[column] = x
+        settled: Float[np.ndarray, " P"] = self.settle(row[None])[0]
+        return settled
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +66,7 @@ def without_pose(distance: Callable[[Float[np.ndarray, " P"]], float]) -> Evalua
 def hill_climb(
     evaluate: Evaluate,
     start: Candidate,
-    minimum: Float[np.ndarray, " P"],
-    maximum: Float[np.ndarray, " P"],
+    space: SearchSpace,
     step_sizes: Sequence[float],
     *,
     progress: Progress = NULL_PROGRESS,
@@ -55,17 +76,19 @@ def hill_climb(
     """Algorithm 2: move one parameter at a time by a step up or down, keep what lowers the distance.
 
     The printed loop condition is read as: passes at one step size go on for as long as a pass changed some
-    parameter, then the next smaller step follows; the search ends after the smallest. New values are clamped
-    to their range, and an end of a range is taken only if it improves the distance.
+    parameter, then the next smaller step follows; the search ends after the smallest. New values are settled, which
+    clamps them to their range, and an end of a range is taken only if it improves the distance.
 
-    Values that cannot win are not measured: those equal to the incumbent after clamping, those that were the
-    incumbent once (it was beaten), and those already refused at the incumbent's pose.
+    A choice has no steps (ours): each of its options is tried instead, in every pass.
+
+    Values that cannot win are not measured: those equal to the incumbent after settling (so that a parameter that is
+    not active costs nothing), those that were the incumbent once (it was beaten), and those already refused at the
+    incumbent's pose.
 
     Args:
         evaluate: measures values; :func:`without_pose` makes one of a plain distance.
         start: values with their distance (and pose).
-        minimum: smallest values.
-        maximum: largest values.
+        space: where the values may go.
         step_sizes: largest first, in units of x.
         progress: told before every measurement; the share of a step size that is done can only be guessed,
             but it never falls.
@@ -87,9 +110,9 @@ def hill_climb(
             for p in range(n_parameters):
                 done = passes_here + p / n_parameters
                 fraction = (rank + done / (done + 1.0)) / len(step_sizes)
-                for direction in (step, -step):
-                    values = best.values.copy()
-                    values[p] = min(max(values[p] + direction, minimum[p]), maximum[p])
+                options = space.options[p]
+                for move in options or (step, -step):
+                    values = space.moved(best.values, p, move if options else best.values[p] + move)
                     key = _key(values)
                     if key in beaten or (key, id(best.pose)) in refused:
                         continue

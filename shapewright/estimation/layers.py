@@ -4,27 +4,29 @@ from collections.abc import Callable
 
 import numpy as np
 
-from shapewright.distances.alignment import Pose, realign, rotations_24
-from shapewright.distances.panorama import panorama_distances
+from shapewright.distances.alignment import PointDistance, Pose, realign, rotations_24
+from shapewright.distances.panorama import PanoramaDescriptor, panorama_distances
 from shapewright.estimation.bank import PanoramaBank
 from shapewright.estimation.comparison import Comparison
-from shapewright.estimation.hill_climbing import Candidate, Evaluate, hill_climb, without_pose
+from shapewright.estimation.hill_climbing import Candidate, Evaluate, SearchSpace, hill_climb, without_pose
 from shapewright.estimation.steady_progress import SteadyProgress
+from shapewright.mesh import TriangleMesh
 from shapewright.progress import Progress
 
 Improved = Callable[[Candidate], None]
 """Told about every new incumbent, so that a cancelled estimation has its best so far."""
 
-PosedDistance = Callable[[np.ndarray], float]
+PosedDistance = Callable[[TriangleMesh], PointDistance]
+"""Prepares the distance of an instance, which then asks for its posed vertices."""
 
 _SCAN_ROWS = 1024
 
 
-def nearest_in_bank(comparison: Comparison, bank: PanoramaBank) -> Candidate:
+def nearest_in_bank(descriptor: PanoramaDescriptor, bank: PanoramaBank) -> Candidate:
     """Start of layer 1: the random instance with the smallest panorama distance to the query."""
     best, distance = 0, np.inf
     for start in range(0, len(bank), _SCAN_ROWS):
-        distances = panorama_distances(comparison.descriptor, bank.descriptors[start : start + _SCAN_ROWS])
+        distances = panorama_distances(descriptor, bank.descriptors[start : start + _SCAN_ROWS])
         row = int(np.argmin(distances))
         if distances[row] < distance:
             best, distance = start + row, float(distances[row])
@@ -33,7 +35,7 @@ def nearest_in_bank(comparison: Comparison, bank: PanoramaBank) -> Candidate:
 
 def climb_panorama(comparison: Comparison, start: Candidate, progress: Progress, improved: Improved) -> Candidate:
     """Rest of layer 1: hill climbing with the panorama distance, which knows no pose."""
-    measured = without_pose(lambda values: comparison.panorama(comparison.points(values)))
+    measured = without_pose(lambda values: comparison.panorama(comparison.instance(values)))
     return _climb(comparison, measured, start, progress, improved, "panorama distance")
 
 
@@ -45,7 +47,8 @@ def align_in_24_ways(
 
     The result's distance is the surface distance. ``improved`` is told in the same terms.
     """
-    points = comparison.points(start.values)
+    instance = comparison.instance(start.values)
+    points, surface = instance.vertices, comparison.surface(instance)
     normal = comparison.initial_pose(points)
     best: Candidate | None = None
     rotations = rotations_24()
@@ -54,7 +57,7 @@ def align_in_24_ways(
         progress.report(k / len(rotations), f"orientation {k + 1} of {len(rotations)}{known}")
         alignment = realign(
             points,
-            comparison.surface,
+            surface,
             Pose(rotation).compose(normal),
             comparison.settings.alignment,
             checkpoint=steady.repeat,
@@ -93,10 +96,11 @@ def _realigned(
     """Measure an instance at the best pose that is found from the incumbent's; generated once for all poses."""
 
     def evaluate(values: np.ndarray, incumbent: Candidate) -> Candidate:
-        points = comparison.points(values)
+        instance = comparison.instance(values)
+        points = instance.vertices
         alignment = realign(
             points,
-            distance,
+            distance(instance),
             incumbent.pose or comparison.initial_pose(points),
             comparison.settings.alignment,
             original_scale=original_scale,
@@ -115,11 +119,12 @@ def _climb(
     improved: Improved,
     name: str,
 ) -> Candidate:
+    generator = comparison.generator
+    options = tuple(tuple(x for x, _ in parameter.named_options()) for parameter in generator.model.parameters)
     climb = hill_climb(
         evaluate,
         start,
-        comparison.generator.minimum,
-        comparison.generator.maximum,
+        SearchSpace(generator.space.settle, options),
         comparison.settings.step_sizes,
         progress=progress,
         on_improvement=improved,

@@ -3,11 +3,12 @@
 from collections.abc import Callable
 
 import numpy as np
+from jaxtyping import Float
 
 from shapewright.distances.alignment import Pose
 from shapewright.errors import Cancelled
 from shapewright.estimation import layers
-from shapewright.estimation.bank import PanoramaBank, bank_chunks, joined
+from shapewright.estimation.bank import BankCancelled, PanoramaBank, build_bank
 from shapewright.estimation.comparison import Comparison
 from shapewright.estimation.generator import InstanceGenerator
 from shapewright.estimation.hill_climbing import Candidate
@@ -94,10 +95,10 @@ class ReferenceEstimator:
         else:
             bank.check_fits(self._generator, settings.subdivision_steps)
 
-        start = layers.nearest_in_bank(comparison, bank)
+        start = layers.nearest_in_bank(comparison.descriptor, bank)
         self._found["panorama"] = start
         first = layers.climb_panorama(comparison, start, phase["layer 1"], self._keep("panorama"))
-        original_scale = comparison.initial_pose(comparison.points(first.values)).scale
+        original_scale = comparison.initial_pose(comparison.instance(first.values).vertices).scale
         aligned = layers.align_in_24_ways(
             comparison, first, phase["layer 2, alignment"], self._steady, self._keep("panorama")
         )
@@ -124,23 +125,15 @@ class ReferenceEstimator:
         self._steady.report(1.0, "estimated")
 
     def _build_bank(self, comparison: Comparison, rng: np.random.Generator, progress: Progress) -> PanoramaBank:
-        chunks: list[PanoramaBank] = []
         settings = self._settings
-        pieces = bank_chunks(
-            self._generator,
-            settings.samples,
-            rng,
-            subdivision_steps=settings.subdivision_steps,
-            progress=progress,
-        )
         try:
-            for chunk in pieces:
-                chunks.append(chunk)  # noqa: PERF402 - what is there when the generator is cancelled counts
-        except Cancelled:
-            if chunks:
-                self._found["panorama"] = layers.nearest_in_bank(comparison, joined(chunks))
+            return build_bank(
+                self._generator, settings.samples, rng, progress, subdivision_steps=settings.subdivision_steps
+            )
+        except BankCancelled as cancelled:
+            if cancelled.bank is not None:
+                self._found["panorama"] = layers.nearest_in_bank(comparison.descriptor, cancelled.bank)
             raise
-        return joined(chunks)
 
     def _keep(self, name: StageName) -> Callable[[Candidate], None]:
         def keep(candidate: Candidate) -> None:
@@ -151,25 +144,13 @@ class ReferenceEstimator:
     def _estimation(self) -> Estimation:
         stages = tuple(self._stage(name) for name in STAGE_LAYERS if name in self._found)
         answer = choose(stages, self._settings)
-        parameters = tuple(
-            ParameterEstimate(
-                name=parameter.name,
-                label=parameter.label,
-                unit=parameter.unit,
-                value=float(value),
-                base_value=parameter.base_value,
-                minimum=parameter.minimum,
-                maximum=parameter.maximum,
-            )
-            for parameter, value in zip(self._generator.model.parameters, answer.values, strict=True)
-        )
         steps = max(self._settings.subdivision_steps, SHOWN_SUBDIVISION_STEPS)
-        points = self._generator.surface_points(answer.values[None], steps)[0]
-        mesh = TriangleMesh(answer.pose.apply(points), self._generator.surface_triangles(steps))
+        instance = self._generator.instance(answer.values, steps)
+        mesh = TriangleMesh(answer.pose.apply(instance.vertices), instance.faces)
         return Estimation(
             layer=answer.layer,
             values=answer.values,
-            parameters=parameters,
+            parameters=self._parameters(answer.values),
             pose=answer.pose,
             distances=answer.distances,
             stages=stages,
@@ -177,16 +158,35 @@ class ReferenceEstimator:
             complete=len(self._finished) == len(STAGE_LAYERS),
         )
 
+    def _parameters(self, values: Float[np.ndarray, " P"]) -> tuple[ParameterEstimate, ...]:
+        space = self._generator.space
+        lowest, highest = space.ranges(values[None])
+        active = space.active(values[None])[0]
+        return tuple(
+            ParameterEstimate(
+                name=parameter.name,
+                label=parameter.label,
+                unit=parameter.unit,
+                value=float(values[i]),
+                base_value=parameter.base_value,
+                minimum=float(lowest[0, i]),
+                maximum=float(highest[0, i]),
+                active=bool(active[i]),
+                option=dict(parameter.named_options()).get(float(values[i])),
+            )
+            for i, parameter in enumerate(self._generator.model.parameters)
+        )
+
     def _stage(self, name: StageName) -> Stage:
         assert self._comparison is not None
         comparison = self._comparison
         candidate = self._found[name]
-        points = comparison.points(candidate.values)
-        pose: Pose = candidate.pose or comparison.initial_pose(points)
+        instance = comparison.instance(candidate.values)
+        pose: Pose = candidate.pose or comparison.initial_pose(instance.vertices)
         return Stage(
             name=name,
             values=candidate.values,
             pose=comparison.to_file.compose(pose),
-            distances=comparison.distances(points, pose),
+            distances=comparison.distances(instance, pose),
             complete=name in self._finished,
         )

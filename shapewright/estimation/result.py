@@ -38,8 +38,8 @@ class Distances:
 class ParameterEstimate:
     """An estimated parameter. ``value`` is x (1 is the base model); with a ``base_value`` people read x times it.
 
-    The range is the one that the other values leave. ``option`` is the name of a choice's value. A parameter that is not
-    ``active`` means nothing beside the other values, and is 1.
+    The range is the one that the other values leave. ``option`` is the name of a choice's value. A parameter that is
+    not ``active`` means nothing beside the other values, and is 1.
     """
 
     name: str

@@ -1,8 +1,8 @@
-"""Which layer's result is the answer (end of section 3.3)."""
+"""Which layer's result is the answer (end of section 3.3), and which model's."""
 
 from collections.abc import Sequence
 
-from shapewright.estimation.result import Stage
+from shapewright.estimation.result import Estimation, Stage
 from shapewright.estimation.settings import EstimationSettings
 
 
@@ -30,3 +30,14 @@ def choose(stages: Sequence[Stage], settings: EstimationSettings) -> Stage:
     if 2 in by_layer and by_layer[2].distances.surface < settings.surface_threshold:
         return by_layer[2]
     return by_layer[1]
+
+
+def order(estimation: Estimation) -> tuple[int, float]:
+    """Sorts estimations of one query with different models, the best first (ours).
+
+    An adequate result of a higher layer goes before one of a lower layer; within a layer the distance counts that made
+    it adequate.
+    """
+    distances = estimation.distances
+    decisive = {1: distances.panorama, 2: distances.surface, 3: distances.zbuffer}
+    return -estimation.layer, decisive[estimation.layer]

@@ -250,6 +250,36 @@ def test_what_depends_on_other_values_follows_them(new_page: Callable[..., Page]
     page.screenshot(path=tmp_path / "active.png")
 
 
+def test_a_mesh_is_rebuilt_by_the_best_model_of_its_class(
+    new_page: Callable[..., Page], site: Site, tmp_path: Path
+) -> None:
+    compiled = armchair().compile()
+    path = tmp_path / "found chair.off"
+    compiled.instance(compiled.values_from_mapping({"armrests": 0, "back": 2, "leg_length": 1.5})).save(path)
+    coarse = {"samples": 200, "surface_points": 50, "image_size": 16, "subdivision_steps": 1, "step_sizes": [0.5]}
+    with connected(site.url, ready_within_s=START_TIMEOUT_S) as client:
+        mesh = client.upload("/v1/meshes", path)
+        body = {"mesh_id": mesh["id"], "class_name": "chair", "settings": coarse}
+        accepted = client.post("/v1/estimations", body)
+        client.follow(accepted["job"])
+    page = new_page(f"#/estimations/{accepted['id']}")
+    result = page.get_by_test_id("estimation-result")
+    expect(result).to_be_visible(timeout=30_000)
+    expect(result.get_by_test_id("models-tried")).to_contain_text("Rebuilt with Armchair, out of 2 models")
+    table = result.get_by_test_id("parameter-table")
+    expect(table.get_by_role("row", name="Back")).to_contain_text("high back")
+    expect(table.get_by_role("row", name="Armrest height")).to_contain_text("inactive")
+    page.screenshot(path=tmp_path / "class.png", full_page=True)
+
+    page.get_by_role("button", name="Estimate again").click()
+    with page.expect_request(lambda request: request.url.endswith("/v1/estimations")) as asked:
+        page.get_by_label("Model", exact=True).select_option("Any chair: best of 2")
+        page.get_by_role("button", name="Estimate parameters").click()
+    assert asked.value.post_data_json["class_name"] == "chair"
+    page.get_by_test_id("job-progress").get_by_role("button", name="Cancel").click()
+    expect(page.get_by_test_id("job-progress")).to_have_count(0, timeout=JOB_TIMEOUT_MS)
+
+
 def test_thumbnails_come_when_they_are_drawn(new_page: Callable[..., Page]) -> None:
     page = new_page()
     page.wait_for_function(

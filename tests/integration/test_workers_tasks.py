@@ -1,6 +1,7 @@
 """The tasks themselves, run in this process: what they keep, what they reuse, what they say when it fails."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -52,6 +53,30 @@ def test_an_estimation_is_what_the_library_says_and_keeps_the_bank(site: Site) -
     assert bank_file(site).stat().st_mtime_ns == written_at
     again = site.estimation(second.id).result
     assert {name: value for name, value in again.items() if name != "seconds"} == expected
+
+
+def test_an_estimation_for_a_class_finds_the_model_and_keeps_every_bank(site: Site) -> None:
+    bricks, rods = brick(), replace(rod(), class_name="brick")
+    models = [site.add_model(bricks), site.add_model(rods)]
+    query = rods.compile().instance(np.array([1.7])).to_bytes("off")
+    stored, _ = catalog.store_mesh(
+        site.database, site.artifacts, query, file_name="q.off", file_type="off",
+        mesh=parse_mesh(query, "off"), now=now(),
+    )  # fmt: skip
+    with site.database.writing() as session:
+        row = catalog.request_estimation(
+            session, stored.id, None, {**QUICK, "samples": 30}, class_name="brick", now=now()
+        )
+    assert (row.model_id, row.model_ids) == (None, models)
+    run(site, row.job_id)
+    assert site.job(row.job_id).state is JobState.SUCCEEDED, site.job(row.job_id).error_detail
+    done = site.estimation(row.id)
+    assert done.model_id == rods.digest
+    assert [one["model_name"] for one in done.result["models_tried"]] == ["rod", "brick"]
+    assert done.result["parameters"][0]["name"] == "length"
+    for model in models:
+        (path,) = (Path(site.settings.data_dir) / "artifacts" / "banks" / model).iterdir()
+        assert len(PanoramaBank.load(path)) == 30
 
 
 def test_a_damaged_bank_is_built_anew(site: Site) -> None:

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from chair_model import armchair
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from shapewright.errors import Cancelled
-from shapewright.estimation.hill_climbing import Candidate, HillClimb, hill_climb, without_pose
+from shapewright.estimation.hill_climbing import Candidate, HillClimb, SearchSpace, hill_climb, without_pose
 from shapewright.progress import CallbackProgress
 
 STEPS = (1.0, 0.5, 0.25, 0.1, 0.01)
@@ -14,9 +15,9 @@ STEPS = (1.0, 0.5, 0.25, 0.1, 0.01)
 
 def climb(function, start, low, high, steps=STEPS, **options) -> HillClimb:
     start = np.asarray(start, dtype=np.float64)
-    low, high = (np.broadcast_to(np.float64(limit), start.shape) for limit in (low, high))
+    space = SearchSpace(lambda rows: np.clip(rows, low, high), ((),) * len(start))
     begin = Candidate(start, function(start))
-    return hill_climb(without_pose(function), begin, low, high, steps, **options)
+    return hill_climb(without_pose(function), begin, space, steps, **options)
 
 
 @settings(max_examples=60, deadline=None)
@@ -67,6 +68,29 @@ def test_the_end_of_a_range_is_taken_only_if_it_is_better() -> None:
     assert worse_at_the_end.best.values[0] == 1.6
     better_at_the_end = climb(lambda v: float(-v[0]), [1.6], 0.5, 2.0, steps=(1.0,))
     assert better_at_the_end.best.values[0] == 2.0
+
+
+def test_options_are_tried_instead_of_steps_and_inactive_values_cost_nothing() -> None:
+    compiled = armchair().compile()
+    columns = compiled.space.columns
+    options = tuple(tuple(x for x, _ in parameter.named_options()) for parameter in compiled.model.parameters)
+    goal = compiled.values_from_mapping({"back": 3, "armrests": 0, "leg_length": 1.6, "ring_height": 1.4})
+    seen: list[np.ndarray] = []
+
+    def distance(values: np.ndarray) -> float:
+        seen.append(values)
+        return float(np.abs(values - goal).sum() + (values[columns["back"]] == 2))  # a hill between the options
+
+    start = compiled.base_values()
+    end = hill_climb(
+        without_pose(distance), Candidate(start, distance(start)), SearchSpace(compiled.settle, options), STEPS
+    )
+    np.testing.assert_allclose(end.best.values, goal, atol=0.006)
+    rows = np.array(seen)
+    np.testing.assert_array_equal(compiled.settle(rows), rows)
+    assert len(np.unique(rows.round(9), axis=0)) == len(rows)
+    without = rows[rows[:, columns["armrests"]] == 0]
+    assert (without[:, columns["arm_height"]] == 1).all()
 
 
 def test_no_parameters_and_nothing_to_gain() -> None:
