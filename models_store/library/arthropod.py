@@ -35,7 +35,7 @@ class LegShape:
     ankle_deg: float
     inset: float
     length_range: Range = (0.6, 1.7)
-    thickness_range: Range = (0.5, 2.2)
+    thickness_range: Range = (0.4, 2.0)
     raise_range: Range = (0.0, 1.8)
     knee_range: Range = (0.2, 1.5)
     ankle_range: Range = (-0.8, 2.0)

@@ -20,7 +20,7 @@ from models_store.library.author import publish
 from models_store.library.loft import Loft, Section, loft
 from shapewright.modeling import ProceduralModel, Recorder, when
 
-LEGS = LegShape(length=2.4, thickness=0.13, raise_deg=38.0, knee_deg=75.0, ankle_deg=20.0, inset=0.22)
+LEGS = LegShape(length=2.4, thickness=0.12, raise_deg=38.0, knee_deg=75.0, ankle_deg=20.0, inset=0.22)
 HEADINGS_DEG = (58.0, 22.0, -16.0, -52.0)
 THIRD_PAIR_TURN_DEG = 16.0
 FOREBODY = (
