@@ -46,6 +46,13 @@ HUMP = (
     Section(0.4, 0.70, 0.66),
     Section(1.1, 0.40, 0.36),
 )
+CANOPY = (
+    Section(-1.6, 0.30, 0.24),
+    Section(-0.9, 0.72, 0.80),
+    Section(0.3, 0.76, 0.84),
+    Section(1.2, 0.50, 0.40),
+)
+CANOPY_PLACE = 6  # the section of the hull that bears it
 ENGINES = Pods(
     "side_engine",
     "Side engine",
@@ -68,6 +75,7 @@ def build() -> ProceduralModel:
     recorder = Recorder("helicopter_attack", "helicopter", description="A slim attack helicopter with stub wings.")
     body = hull(recorder, HULL)
     hump = engine(recorder, HUMP, upper(recorder, body, 4))
+    _canopy(recorder, body)
     _side_engines(recorder, body)
     _wings(recorder, body)
     _gun(recorder, body)
@@ -79,6 +87,17 @@ def build() -> ProceduralModel:
     undercarriage(recorder, GEAR, body, 5, 3, nose=7, tail=1, lengthens=("cabin_length",))
     recorder.symmetry(mirrors=("y",), apart=apart)
     return recorder.build()
+
+
+def _canopy(recorder: Recorder, body: Loft) -> None:
+    """A hump over both seats before the engines, or none."""
+    recorder.switch("canopy", "Canopy")
+    there = (when("canopy", 1),)
+    canopy = loft(recorder, "x", CANOPY, anchors=[upper(recorder, body, CANOPY_PLACE)])
+    for what, axis, low, high in (("length", "u", 0.6, 1.4), ("height", "z", 0.4, 1.7)):
+        recorder.parameter(f"canopy_{what}", f"Canopy {what}", low, high, active_when=there)
+        recorder.scale(canopy.body(), 1.0, axis, size=f"canopy_{what}")
+    recorder.part("canopy", whole(canopy), present_when=there)
 
 
 def _side_engines(recorder: Recorder, body: Loft) -> None:
