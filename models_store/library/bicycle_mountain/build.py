@@ -20,7 +20,7 @@ def build() -> ProceduralModel:
     recorder.parameter("seat_tube", "Height of the mast", -0.3, 2.0, unit="m", base_value=0.09)
     recorder.parameter("beam", "Beam thickness", 0.6, 1.8, unit="m", base_value=0.066)
     recorder.parameter("pivot", "Height of the rear pivot", 0.2, 2.0, unit="m", base_value=0.07)
-    recorder.parameter("knee", "Height of the mast's foot", 0.0, 1.8, unit="m", base_value=0.08)
+    recorder.parameter("knee", "Height of the mast's foot", -1.0, 1.8, unit="m", base_value=0.08)
     frame = chassis(recorder, {**NODES, "pivot": PIVOT, "knee": KNEE}, (0.046, 0.036))
     tube = frame.skeleton.tube
     beams = [
