@@ -104,7 +104,7 @@ def main_rotor(recorder: Recorder, rotor: Rotor, mast: Mast, *anchors: Target) -
     turning = [_blades(recorder, rotor, column.rings[-1][0], flat=True) for column in columns]
     name = f"{rotor.prefix}_blade_width"
     recorder.parameter(
-        name, f"{rotor.label} blade width", 0.5, 2.2, base_value=rotor.blade_width, active_when=rotor.bladed
+        name, f"{rotor.label} blade width", 0.4, 1.8, base_value=rotor.blade_width, active_when=rotor.bladed
     )
     for each in turning:
         recorder.scale(each.blades.body(hinge=0), 1.0, "u", size=f"{rotor.prefix}_diameter")

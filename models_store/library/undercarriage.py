@@ -98,7 +98,7 @@ def _skids(
 ) -> None:
     there = gear.present("skids")
     recorder.parameter("skid_length", "Skid length", 0.75, 1.4, base_value=gear.skid_length, active_when=there)
-    recorder.parameter("skid_thickness", "Skid thickness", 0.5, 4.0, base_value=gear.skid_thickness, active_when=there)
+    recorder.parameter("skid_thickness", "Skid thickness", 0.5, 3.0, base_value=gear.skid_thickness, active_when=there)
     struts = [_strut(recorder, gear, anchors, gear.skid_thickness * 0.9) for anchors in (front, rear)]
     feet = [
         Target(struts[0].rings[2][copy] + struts[1].rings[2][copy], "world", struts[0].images[copy]) for copy in (0, 1)

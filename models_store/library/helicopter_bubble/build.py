@@ -13,7 +13,7 @@ from models_store.library.rotors import Mast, Rotor, main_rotor, tail_rotor
 from models_store.library.undercarriage import Gear, undercarriage
 from shapewright.modeling import Mirror, ProceduralModel, Recorder, Target, when
 
-CABIN_LENGTH, CABIN_WIDTH, CABIN_HEIGHT = 3.0, 1.75, 1.85
+CABIN_LENGTH, CABIN_WIDTH, CABIN_HEIGHT = 3.5, 1.85, 2.0
 REAR = 1  # the section of the cabin that bears the boom
 TUBE = (
     Section(-4.6, 0.20, 0.22),
@@ -52,7 +52,7 @@ def build() -> ProceduralModel:
 
 def _cabin(recorder: Recorder) -> Loft:
     """An egg; its rear may be drawn up and out towards the boom, its nose may sink."""
-    cabin = loft(recorder, "x", bulb(CABIN_LENGTH, CABIN_WIDTH, CABIN_HEIGHT, start=-1.5, count=7, peak=0.95))
+    cabin = loft(recorder, "x", bulb(CABIN_LENGTH, CABIN_WIDTH, CABIN_HEIGHT, start=-1.8, count=7, peak=0.95))
     for what, axis in (("length", "u"), ("width", "v"), ("height", "z")):
         recorder.parameter(f"cabin_{what}", f"Cabin {what}", 0.65, 1.4)
         recorder.scale(cabin.body(hinge=3), 1.0, axis, size=f"cabin_{what}")
@@ -73,7 +73,7 @@ def _boom(recorder: Recorder, cabin: Loft) -> Loft:
     sides = (anchor, replace(anchor, image=(Mirror("y"),)))
     high, low, brace = (_rods(recorder, heights, sides) for heights in ((1, 1), (-1, -1), (1, -1, 1, -1, 1, -1, 1)))
     recorder.choice("boom", "Tail boom", ("tube", "lattice"))
-    recorder.parameter("tail_length", "Tail boom length", 0.6, 1.4, base_value=-TUBE[0].at)
+    recorder.parameter("tail_length", "Tail boom length", 0.5, 1.3, base_value=-TUBE[0].at)
     recorder.scale(
         [target for body in (tube, high, low, brace) for target in body.body(hinge=len(body.rings) - 1)],
         1.0,
