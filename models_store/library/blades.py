@@ -10,6 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+import numpy as np
+
 from models_store.library.lathe import Lathe, Ring, control_diameter, widen
 from models_store.library.loft import move
 from shapewright.modeling import Component, Element, Mirror, Recorder, Target, group
@@ -153,6 +155,8 @@ def grip(
     knob: Sequence[float],
     *,
     pommel_width: float | None = None,
+    ribs: int = 0,
+    rib: float = 1.0,
 ) -> Grip:
     """Model a grip from z = 0 downwards.
 
@@ -160,10 +164,15 @@ def grip(
         swell: widths of the handle's rings relative to its diameter, at least three, from the upper end to the lower.
         pommel: height of the pommel, and its diameter unless ``pommel_width`` is given.
         knob: widths of the pommel's rings relative to its diameter, at least two.
+        ribs: how many ribs the handle has, such as windings of wire; then ``swell`` is spread over more rings.
+        rib: width of a rib, relative to the handle there; the parameter ``grip_ribs`` varies it.
     """
     start = 0.04 * length
     made = recorder.prism(HILT_SIDES, control_diameter(1.0, HILT_SIDES), start, offset=(0.0, 0.0, -start))
     column = Lathe(recorder, made, downwards=True)
+    if ribs:
+        places = np.linspace(0.0, len(swell) - 1.0, 2 * ribs + 3)
+        swell = [float(width) for width in np.interp(places, np.arange(len(swell)), swell)]
     step = (length - start) / (len(swell) - 2)
     handle = [column.bottom, column.top, *(column.rise(step, length="grip_length") for _ in swell[2:])]
     share = pommel / (len(knob) - 0.5)
@@ -173,4 +182,6 @@ def grip(
     for ring, width in zip((*handle, *knobs), (*swell, *knob), strict=True):
         if width != 1.0:
             widen(recorder, [ring], width)
+    if ribs:
+        widen(recorder, handle[2:-1:2], rib, size="grip_ribs")
     return Grip(made, tuple(handle), tuple(knobs))

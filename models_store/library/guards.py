@@ -33,6 +33,7 @@ def bar(recorder: Recorder, grip: Grip, length: float, diameter: float, end: flo
     lengths = ["bar_length"] * 3 + ["bar_thickness"] * 3
     widths = [diameter * 12 / 11] * 5 + [diameter * 12 / 11 * share for share in (end, end, 0.55 * end)]
     arms = tube(recorder, path, widths, normal="z", anchors=anchors, sides=BAR_SIDES, lengths=lengths)
+    recorder.mark_sharp(*(arm.bottom for arm in arms.components))  # so that the arms meet without a waist
     for level in range(len(xs)):
         across = arms.sections(level)
         recorder.scale(across, 1.0, "vz", size="bar_thickness")

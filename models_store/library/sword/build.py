@@ -48,7 +48,7 @@ def build() -> ProceduralModel:
 
     grip = blades.grip(recorder, GRIP_LENGTH, GRIP_DIAMETER, SWELL, POMMEL, KNOB)
     _guard(recorder, grip.top)
-    blade = blades.blade(recorder, grip.top, BLADE_LENGTH, TIP_LENGTH, root=GUARD_HEIGHT / 2, segments=BLADE_SEGMENTS)
+    blade = blades.blade(recorder, grip.top, BLADE_LENGTH, TIP_LENGTH, root=0.006, segments=BLADE_SEGMENTS)
     losses = [BLADE_TAPER / 2 * min((i + 1) / BLADE_SEGMENTS, 1.0) for i in range(len(blade.rings) - 1)]
     blades.hone(recorder, blade, losses, length="blade_taper")
     blades.give_size(recorder, blade, BLADE_WIDTH, BLADE_THICKNESS)

@@ -17,6 +17,7 @@ DISC_WIDTH, DISC_DEPTH, DISC_WALL, DISC_DOME = 0.055, 0.045, 0.008, 0.004
 GRIP_LENGTH, GRIP_DIAMETER, GRIP_FLATNESS, POMMEL = 0.105, 0.030, 0.9, 0.034
 HANDLE = (0.95, 0.95, 1.05, 1.08, 1.0, 0.92)
 KNOB = (0.85, 1.04, 1.0, 0.6)
+RIBS, RIB = 7, 1.15  # of the grip: how many, and their width relative to the grip's
 
 
 def build() -> ProceduralModel:
@@ -34,19 +35,21 @@ def build() -> ProceduralModel:
     bar_there, disc_there = (when("guard", 1),), (when("guard", 2),)
     length, thickness = "Cross bar length (each arm)", "Cross bar thickness"
     recorder.parameter("bar_length", length, 0.5, 2.0, unit="m", base_value=BAR_LENGTH, active_when=bar_there)
-    recorder.parameter("bar_thickness", thickness, 0.6, 1.9, unit="m", base_value=BAR_DIAMETER, active_when=bar_there)
+    recorder.parameter("bar_thickness", thickness, 0.6, 2.4, unit="m", base_value=BAR_DIAMETER, active_when=bar_there)
     recorder.parameter("bar_end", "Cross bar knobs (relative)", 0.6, 1.4, base_value=BAR_END, active_when=bar_there)
+    recorder.limit("bar_end", maximum=("bar_thickness", 1.9, -0.5))
     recorder.parameter("bar_bend", "Cross bar bend", -6, 8, unit="deg", base_value=BAR_BEND_DEG, active_when=bar_there)
     recorder.parameter("disc_width", "Disc width", 0.8, 1.7, unit="m", base_value=DISC_WIDTH, active_when=disc_there)
     recorder.parameter("disc_depth", "Disc depth", 0.75, 2.0, unit="m", base_value=DISC_DEPTH, active_when=disc_there)
     recorder.parameter("disc_dome", "Disc bulge", 0.2, 3.0, unit="m", base_value=DISC_DOME, active_when=disc_there)
     recorder.parameter("grip_length", "Grip length", 0.7, 1.6, unit="m", base_value=GRIP_LENGTH)
-    recorder.parameter("grip_thickness", "Grip width", 0.7, 1.5, unit="m", base_value=GRIP_DIAMETER)
+    recorder.parameter("grip_thickness", "Grip width", 0.7, 1.7, unit="m", base_value=GRIP_DIAMETER)
     recorder.parameter("grip_flatness", "Grip depth (relative to its width)", 0.5, 1.15, base_value=GRIP_FLATNESS)
+    recorder.parameter("grip_ribs", "Grip ribs (width relative to the grip)", 0.87, 1.3, base_value=RIB)
     recorder.parameter("pommel_width", "Pommel width", 0.7, 1.5, unit="m", base_value=POMMEL)
     recorder.parameter("pommel_length", "Pommel length", 0.3, 1.5, unit="m", base_value=POMMEL)
 
-    grip = blades.grip(recorder, GRIP_LENGTH, GRIP_DIAMETER, HANDLE, POMMEL, KNOB)
+    grip = blades.grip(recorder, GRIP_LENGTH, GRIP_DIAMETER, HANDLE, POMMEL, KNOB, ribs=RIBS, rib=RIB)
     recorder.scale(grip.all(), GRIP_FLATNESS, "v", size="grip_flatness")
     arms = guards.bar(recorder, grip, BAR_LENGTH, BAR_DIAMETER, BAR_END, BAR_BEND_DEG)
     recorder.part("cross bar", arms.components, bar_there)

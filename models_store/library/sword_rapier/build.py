@@ -18,6 +18,7 @@ BOW_WIDTH, BOW_DIAMETER = 0.065, 0.009
 GRIP_LENGTH, GRIP_DIAMETER, POMMEL = 0.13, 0.028, 0.042
 SWELL = (0.9, 0.95, 1.08, 1.08, 0.95, 0.8)
 KNOB = (0.7, 1.04, 0.95, 0.5)
+RIBS, RIB = 7, 1.15  # of the grip: how many, and their width relative to the grip's
 
 
 def build() -> ProceduralModel:
@@ -39,7 +40,7 @@ def build() -> ProceduralModel:
     recorder.parameter(
         "disc_depth", "Cup depth (relative to its width)", 0.75, 1.0, base_value=1.0, active_when=cup_there
     )
-    recorder.parameter("disc_dome", "Cup height", 0.05, 1.8, unit="m", base_value=CUP_DOME, active_when=cup_there)
+    recorder.parameter("disc_dome", "Cup height", 0.05, 2.4, unit="m", base_value=CUP_DOME, active_when=cup_there)
     recorder.switch("rings", "Side rings", active_when=bar_there)
     rings_there = (*bar_there, when("rings", 1))
     recorder.parameter(
@@ -51,11 +52,12 @@ def build() -> ProceduralModel:
         "bow_width", "Knuckle bow width", 0.6, 1.3, unit="m", base_value=BOW_WIDTH, active_when=bow_there
     )
     recorder.parameter("grip_length", "Grip length", 0.6, 1.8, unit="m", base_value=GRIP_LENGTH)
-    recorder.parameter("grip_thickness", "Grip thickness", 0.5, 1.6, unit="m", base_value=GRIP_DIAMETER)
-    recorder.parameter("pommel_width", "Pommel width", 0.4, 1.4, unit="m", base_value=POMMEL)
-    recorder.parameter("pommel_length", "Pommel length", 0.3, 1.8, unit="m", base_value=POMMEL)
+    recorder.parameter("grip_thickness", "Grip thickness", 0.5, 1.8, unit="m", base_value=GRIP_DIAMETER)
+    recorder.parameter("grip_ribs", "Grip ribs (width relative to the grip)", 0.87, 1.3, base_value=RIB)
+    recorder.parameter("pommel_width", "Pommel width", 0.4, 1.6, unit="m", base_value=POMMEL)
+    recorder.parameter("pommel_length", "Pommel length", 0.3, 2.2, unit="m", base_value=POMMEL)
 
-    grip = blades.grip(recorder, GRIP_LENGTH, GRIP_DIAMETER, SWELL, POMMEL, KNOB)
+    grip = blades.grip(recorder, GRIP_LENGTH, GRIP_DIAMETER, SWELL, POMMEL, KNOB, ribs=RIBS, rib=RIB)
     blade = blades.blade(recorder, grip.top, BLADE_LENGTH, TIP_LENGTH, root=0.004, segments=BLADE_SEGMENTS)
     losses = [BLADE_TAPER / 2 * min((i + 1) / BLADE_SEGMENTS, 1.0) for i in range(len(blade.rings) - 1)]
     blades.hone(recorder, blade, losses, length="blade_taper")

@@ -22,6 +22,7 @@ PRONG_LENGTH, PRONG_DIAMETER, PRONG_BEND_DEG = 0.13, 0.013, 8.0
 GRIP_LENGTH, GRIP_DIAMETER, POMMEL = 0.14, 0.030, 0.052
 HANDLE = (1.0, 1.0, 1.08, 1.15, 1.0, 0.85)
 KNOB = (0.68, 1.04, 0.95, 0.5)
+RIBS, RIB = 7, 1.15  # of the grip: how many, and their width relative to the grip's
 
 
 def build() -> ProceduralModel:
@@ -63,10 +64,11 @@ def build() -> ProceduralModel:
     recorder.parameter("disc_dome", "Boss bulge", 0.2, 2.5, unit="m", base_value=BOSS_DOME)
     recorder.parameter("grip_length", "Grip length", 0.7, 1.8, unit="m", base_value=GRIP_LENGTH)
     recorder.parameter("grip_thickness", "Grip thickness", 0.6, 1.5, unit="m", base_value=GRIP_DIAMETER)
+    recorder.parameter("grip_ribs", "Grip ribs (width relative to the grip)", 0.87, 1.3, base_value=RIB)
     recorder.parameter("pommel_width", "Pommel width", 0.5, 1.5, unit="m", base_value=POMMEL)
     recorder.parameter("pommel_length", "Pommel length", 0.5, 1.6, unit="m", base_value=POMMEL)
 
-    grip = blades.grip(recorder, GRIP_LENGTH, GRIP_DIAMETER, HANDLE, POMMEL, KNOB)
+    grip = blades.grip(recorder, GRIP_LENGTH, GRIP_DIAMETER, HANDLE, POMMEL, KNOB, ribs=RIBS, rib=RIB)
     guards.disc(recorder, grip, BOSS_WIDTH, BOSS_DEPTH, BOSS_WALL, BOSS_DOME)
     blade = blades.blade(recorder, grip.top, BLADE_LENGTH, TIP_LENGTH, root=0.010, segments=BLADE_SEGMENTS)
     losses = [BLADE_TAPER / 2 * min((i + 1) / BLADE_SEGMENTS, 1.0) for i in range(len(blade.rings) - 1)]
