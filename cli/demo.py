@@ -149,15 +149,16 @@ def _walk(
     )
     found = classification["result"]
     console.print(f"   it is a [bold]{found['class_name']}[/] ({found['seconds']:.1f} s)")
-    model = next(model for model in models if model["class_name"] == found["class_name"])
     estimation = _run(
         client,
         "estimating",
         "/v1/estimations",
-        {"mesh_id": uploaded["id"], "model_id": model["id"], "settings": estimating},
+        {"mesh_id": uploaded["id"], "class_name": found["class_name"], "settings": estimating},
     )
     fit = estimation["result"]
-    console.print(f"   fitted with the model {model['name']} ({fit['seconds']:.1f} s)")
+    model = next(model for model in models if model["id"] == estimation["model_id"])
+    tried = ", ".join(f"{one['model_name']} {one['panorama']:.3g}" for one in fit["models_tried"])
+    console.print(f"   fitted with the model {model['name']} ({fit['seconds']:.1f} s), of: {tried}")
 
     _step(console, 5, "what was found")
     console.print(probability_table(found["probabilities"]))
@@ -185,12 +186,15 @@ def _walk(
 
 
 def _upload_models(client: "Client", console: "Console") -> list[Any]:
-    models = []
+    models, uploaded = [], 0
     for document in list_shipped().values():
         model, new = client.post_document("/v1/models", document.read_text(encoding="utf-8"))
         models.append(model)
-        state = "uploaded" if new else "already there"
-        console.print(f"   {model['name']}: {len(model['parameters'])} parameters, {state}")
+        uploaded += new
+    for class_name in sorted({model["class_name"] for model in models}):
+        names = [model["name"] for model in models if model["class_name"] == class_name]
+        console.print(f"   {class_name}: {', '.join(names)}")
+    console.print(f"   {len(models)} models, {uploaded} of them new here")
     return models
 
 

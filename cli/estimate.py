@@ -1,25 +1,35 @@
 """`shapewright estimate`: which parameter values rebuild this mesh?"""
 
 import time
+from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from cli.console import AsJson, print_json, shown_progress, stdout
 from cli.report import parameter_table
-from cli.sources import load_compiled, read_object
+from cli.sources import load_class, load_compiled, read_object
 from shapewright.errors import EstimationError, MeshFileError
 
 if TYPE_CHECKING:
-    from shapewright.estimation import Estimation
+    from shapewright.estimation import ClassEstimation, Estimation
 
 
 def estimate(
     mesh: Annotated[Path, typer.Argument(help="Mesh file: .off, .obj, .ply, .stl, .glb.", show_default=False)],
-    model: Annotated[
-        str, typer.Option("--model", "-m", help="Name of a shipped model, or a JSON file.", show_default=False)
-    ],
+    models: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--model",
+            "-m",
+            help="Name of a shipped model, or a JSON file. Repeatable: the one that fits best is found.",
+            show_default=False,
+        ),
+    ] = None,
+    class_name: Annotated[
+        str | None, typer.Option("--class", help="Try every shipped model of this class.", show_default=False)
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", help="Write the fitted mesh (.glb, .obj, .off, .ply, .stl)."),
@@ -41,7 +51,7 @@ def estimate(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Estimate the parameters of a procedural model so that it rebuilds a mesh.
+    """Estimate the parameters of a procedural model, or of the best one of a class, so that it rebuilds a mesh.
 
     The fitted mesh is written in the coordinates of your file, so that both lie on top of each other. The default
     settings are the method's own and take minutes; --quick is for a first look.
@@ -49,14 +59,17 @@ def estimate(
     Examples:
 
       [bold]shapewright estimate goblet.ply --model glass_with_stem[/]
+      [bold]shapewright estimate goblet.ply --class glass_with_stem[/]
       [bold]shapewright estimate goblet.ply -m glass_with_stem --quick -o fitted.glb --picture fit.png[/]
     """
     _refuse_endings(output, picture)
-    from shapewright.estimation import EstimationSettings
+    if (class_name is None) == (not models):
+        raise typer.BadParameter("name models or a class", param_hint="--model")
+    from shapewright.estimation import EstimationSettings, estimate_class
     from shapewright.estimation import estimate as run_estimation
     from shapewright.mesh_file import load_mesh
 
-    compiled = load_compiled(model)
+    generators = load_class(class_name) if class_name is not None else [load_compiled(model) for model in models or []]
     query = load_mesh(mesh, in_child=True)
     chosen = EstimationSettings.quick().to_dict() if quick else {}
     if settings_file is not None:
@@ -64,8 +77,14 @@ def estimate(
     chosen |= {name: value for name, value in {"samples": samples, "seed": seed}.items() if value is not None}
     settings = EstimationSettings.from_dict(chosen)
     started_s = time.monotonic()
+    of_class: ClassEstimation | None = None
     with shown_progress("estimating") as progress:
-        estimation = run_estimation(query, compiled, settings, progress=progress)
+        if len(generators) == 1:
+            estimation = run_estimation(query, generators[0], settings, progress=progress)
+        else:
+            of_class = estimate_class(query, generators, settings, progress=progress)
+            estimation = of_class.estimation
+    model_name = generators[0].model.name if of_class is None else of_class.model.name
     seconds = time.monotonic() - started_s
     for path in (output, picture):
         if path is not None:
@@ -81,13 +100,16 @@ def estimate(
         print_json(
             {
                 "query": str(mesh),
-                "model": compiled.model.name,
-                **estimation.to_dict(),
+                "model": model_name,
+                **(estimation if of_class is None else of_class).to_dict(),
                 **files,
                 "seconds": round(seconds, 3),
             }
         )
         return
+    if of_class is not None:
+        tried = ", ".join(f"{one.model.name} {one.panorama:.4g}" for one in of_class.tried)
+        typer.echo(f"fitted with the model {model_name}; panorama distances at first: {tried}")
     _print(estimation, seconds)
     for path in (output, picture):
         if path is not None:
@@ -103,14 +125,7 @@ def _refuse_endings(output: Path | None, picture: Path | None) -> None:
 
 def _print(estimation: "Estimation", seconds: float) -> None:
     console = stdout()
-    rows: list[dict[str, Any]] = [
-        {
-            "label": p.label, "unit": p.unit, "value": p.value, "base_value": p.base_value,
-            "minimum": p.minimum, "maximum": p.maximum,
-        }
-        for p in estimation.parameters
-    ]  # fmt: skip
-    console.print(parameter_table(rows))
+    console.print(parameter_table(asdict(parameter) for parameter in estimation.parameters))
     distances = estimation.distances
     console.print(
         f"layer {estimation.layer} · distances: panorama {distances.panorama:.4g}, "

@@ -37,6 +37,7 @@ def instance(
 
       [bold]shapewright instance glass_with_stem -o glass.glb[/]                       the base model
       [bold]shapewright instance table --set leg_length=1.3 -o table.obj[/]            one value changed
+      [bold]shapewright instance my-chair.json --set armrests=without -o chair.stl[/]  an option by its name
       [bold]shapewright instance sword --random --seed 7 --count 20 -o swords/s.ply[/]  s-000.ply … s-019.ply
     """
     if output.suffix.lower().lstrip(".") not in MESH_TYPES:
@@ -47,13 +48,11 @@ def instance(
 
     compiled = load_compiled(model)
     names = [parameter.name for parameter in compiled.model.parameters]
-    fixed = read_assignments(assignments, values)
-    chosen = compiled.values_from_mapping(fixed)
-    table = np.tile(chosen, (count, 1))
+    fixed = read_assignments(compiled.model, assignments, values)
     if random:
-        drawn = compiled.random_values(np.random.default_rng(seed), count)
-        free = [index for index, name in enumerate(names) if name not in fixed]
-        table[:, free] = drawn[:, free]
+        table = compiled.random_values(np.random.default_rng(seed), count, fixed)
+    else:
+        table = compiled.values_from_mapping(fixed)[None]
     output.parent.mkdir(parents=True, exist_ok=True)
     written: list[dict[str, Any]] = []
     for number, row in enumerate(table):

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cli.console import AsJson, print_json, shown_progress, stdout
+from cli.report import conditions_text, model_table, symmetry_text
 from cli.sources import load_model
 from models_store.library.shipped import list_shipped, load_shipped
 from shapewright.errors import ShapewrightError
 
 if TYPE_CHECKING:
-    from shapewright.modeling import ProceduralModel
+    from shapewright.modeling import Parameter, ProceduralModel
 
 app = typer.Typer(rich_markup_mode="rich")
 
@@ -37,25 +38,28 @@ def models(context: typer.Context, as_json: AsJson = False) -> None:
 
 @app.command("list")
 def list_models(as_json: AsJson = False) -> None:
-    """List the procedural models that ship.
+    """List the procedural models that ship, by class.
 
     Example:  [bold]shapewright models list --json[/]
     """
-    found = [load_shipped(name) for name in list_shipped()]
+    found = sorted((load_shipped(name) for name in list_shipped()), key=lambda model: (model.class_name, model.name))
     if as_json:
         print_json({"models": [_summary(model) for model in found]})
         return
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False)
-    table.add_column("name", no_wrap=True, style="bold")
-    table.add_column("class", no_wrap=True)
+    table.add_column("class", no_wrap=True, style="bold")
+    table.add_column("name", no_wrap=True)
     table.add_column("parameters", justify="right", no_wrap=True)
     table.add_column("operations", justify="right", no_wrap=True)
     table.add_column("digest", no_wrap=True, style="dim")
+    above = None
     for model in found:
+        class_name = "" if model.class_name == above else model.class_name
+        above = model.class_name
         counts = (str(len(model.parameters)), str(len(model.operations)))
-        table.add_row(model.name, model.class_name, *counts, model.digest[:12])
+        table.add_row(class_name, model.name, *counts, model.digest[:12])
     stdout().print(table)
     stdout().print("\n[dim]shapewright models show NAME tells more about one.[/]")
 
@@ -65,27 +69,31 @@ def show_model(
     model: Annotated[str, typer.Argument(help="Name of a shipped model, or a JSON file.", show_default=False)],
     as_json: AsJson = False,
 ) -> None:
-    """Show one procedural model: its parameters, their ranges and units.
+    """Show one procedural model: its parameters, their ranges, units and options, its optional parts and symmetry.
 
-    A value x is relative: 1 is the base model, and the measure shown is x times the base value.
+    A value x is relative: 1 is the base model, and the measure shown is x times the base value. A parameter that
+    depends on others counts only where it says so.
 
     Examples:  [bold]shapewright models show table[/]   [bold]shapewright models show my-model.json --json[/]
     """
     loaded = load_model(model)
     if as_json:
-        print_json({**_summary(loaded), "parameters": [_parameter(p) for p in loaded.parameters]})
+        parts = [
+            {"name": part.name, "present_when": [asdict(condition) for condition in part.present_when]}
+            for part in loaded.parts
+        ]
+        symmetry = {"mirrors": loaded.symmetry.mirrors, "axis": loaded.symmetry.axis, "order": loaded.symmetry.order}
+        parameters = [_parameter(parameter) for parameter in loaded.parameters]
+        print_json({**_summary(loaded), "parameters": parameters, "parts": parts, "symmetry": symmetry})
         return
-    from rich.table import Table
-
     console = stdout()
     console.print(f"[bold]{loaded.name}[/] · class {loaded.class_name} · {len(loaded.operations)} operations")
     if loaded.description:
         console.print(loaded.description)
-    table = Table("parameter", "label", "range of x", "base value")
-    for parameter in loaded.parameters:
-        base = "" if parameter.base_value is None else f"{parameter.base_value:g} {parameter.unit or ''}"
-        table.add_row(parameter.name, parameter.label, f"{parameter.minimum:g} … {parameter.maximum:g}", base)
-    console.print(table)
+    console.print(model_table(loaded))
+    for part in loaded.parts:
+        console.print(f"part {part.name}: only if {conditions_text(part.present_when, loaded)}")
+    console.print(f"symmetry {symmetry_text(loaded.symmetry)}")
     console.print(f"digest {loaded.digest}")
 
 
@@ -193,6 +201,11 @@ def _summary(model: "ProceduralModel") -> dict[str, Any]:
     }
 
 
-def _parameter(parameter: Any) -> dict[str, Any]:
+def _parameter(parameter: "Parameter") -> dict[str, Any]:
     fields = ("name", "label", "unit", "base_value", "minimum", "maximum")
-    return {field: getattr(parameter, field) for field in fields}
+    return {
+        **{field: getattr(parameter, field) for field in fields},
+        "options": [{"value": x, "name": option} for x, option in parameter.named_options()],
+        "active_when": [asdict(condition) for condition in parameter.active_when],
+        "limits": [asdict(limit) for limit in parameter.limits],
+    }

@@ -102,7 +102,7 @@ def _mesh(source: str, assignments: list[str] | None) -> "TriangleMesh":
     if not _is_model(source):
         return load_mesh(source, in_child=True)
     compiled = load_compiled(source)
-    return compiled.instance(compiled.values_from_mapping(read_assignments(assignments, None)))
+    return compiled.instance(compiled.values_from_mapping(read_assignments(compiled.model, assignments, None)))
 
 
 def _contact_sheet(
@@ -123,7 +123,7 @@ def _contact_sheet(
     compiled = load_compiled(source)
     return compose_contact_sheet(
         compiled,
-        base=compiled.values_from_mapping(read_assignments(assignments, None)),
+        base=compiled.values_from_mapping(read_assignments(compiled.model, assignments, None)),
         variations=variations,
         rng=np.random.default_rng(seed),
         rotation=view,

@@ -6,14 +6,17 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from shapewright.modeling import Condition, ProceduralModel, Symmetry
+
 BAR_CELLS = 14
 
 
 def parameter_table(parameters: Iterable[Mapping[str, Any]]) -> "Table":
-    """Return a table of estimated parameters: label, measure, x, range, and where x lies in its range.
+    """Return a table of estimated parameters: label, measure or option, x, range, and where x lies in its range.
 
     Args:
-        parameters: mappings with ``label``, ``unit``, ``value`` (x), ``base_value``, ``minimum``, ``maximum``.
+        parameters: mappings with ``label``, ``unit``, ``value`` (x), ``base_value``, ``minimum``, ``maximum``,
+            ``option`` and ``active``.
     """
     from rich.table import Table
 
@@ -21,13 +24,51 @@ def parameter_table(parameters: Iterable[Mapping[str, Any]]) -> "Table":
     for column in table.columns[1:]:
         column.no_wrap = True
     for parameter in parameters:
+        if not parameter["active"]:
+            table.add_row(parameter["label"], "inactive", "", "", "", style="dim")
+            continue
         value, low, high = parameter["value"], parameter["minimum"], parameter["maximum"]
+        if parameter["option"] is not None:
+            table.add_row(parameter["label"], parameter["option"], f"{value:g}", f"{low:g} … {high:g}", "")
+            continue
         base = parameter["base_value"]
         measure = "" if base is None else f"{value * base:.4g} {parameter['unit'] or ''}".strip()
         table.add_row(
-            parameter["label"], measure, f"{value:.3f}", f"{low:g} … {high:g}", position_bar(value, low, high)
+            parameter["label"], measure, f"{value:.3f}", f"{low:.3g} … {high:.3g}", position_bar(value, low, high)
         )
     return table
+
+
+def model_table(model: "ProceduralModel") -> "Table":
+    """Return a table of a model's parameters: name, label, range of x or options, base value, what they depend on."""
+    from rich.table import Table
+
+    table = Table("parameter", "label", "range of x", "base value", "depends on")
+    for parameter in model.parameters:
+        base = "" if parameter.base_value is None else f"{parameter.base_value:g} {parameter.unit or ''}".strip()
+        options = ", ".join(f"{x:g} {option}" for x, option in parameter.named_options())
+        limits = [f"{limit.bound} {limit.offset:g} + {limit.factor:g} {limit.parameter}" for limit in parameter.limits]
+        conditions = [f"only if {conditions_text(parameter.active_when, model)}"] if parameter.active_when else []
+        bounds = options or f"{parameter.minimum:g} … {parameter.maximum:g}"
+        table.add_row(parameter.name, parameter.label, bounds, base, "; ".join(conditions + limits))
+    return table
+
+
+def conditions_text(conditions: "Iterable[Condition]", model: "ProceduralModel") -> str:
+    """Say what must hold, e.g. ``armrests is with and back is low or high``."""
+    by_name = {parameter.name: parameter for parameter in model.parameters}
+    said = []
+    for condition in conditions:
+        options = by_name[condition.parameter].named_options()
+        names = [option for x, option in options if condition.minimum <= x <= condition.maximum]
+        bounds = f"{condition.minimum:g} … {condition.maximum:g}"
+        said.append(f"{condition.parameter} is {' or '.join(names) if options else bounds}")
+    return " and ".join(said)
+
+
+def symmetry_text(symmetry: "Symmetry") -> str:
+    """Say what leaves each instance as it is, e.g. ``mirror y, turn 90 deg about z``."""
+    return ", ".join(symmetry.maps()) or "none"
 
 
 def probability_table(probabilities: Iterable[Mapping[str, Any]]) -> "Table":

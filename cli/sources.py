@@ -47,6 +47,29 @@ def load_all_compiled(sources: list[str] | None) -> "list[CompiledModel]":
     return [load_compiled(source) for source in (sources or list_shipped())]
 
 
+def load_class(class_name: str) -> "list[CompiledModel]":
+    """Load all shipped models of a class.
+
+    Raises:
+        ModelError: no model of the class ships.
+    """
+    classes = shipped_by_class()
+    if class_name not in classes:
+        raise ModelError(f"no such class ships (these do: {', '.join(classes) or 'none'})", where=repr(class_name))
+    return [load_compiled(name) for name in classes[class_name]]
+
+
+def load_classes(sources: list[str] | None) -> "dict[str, list[CompiledModel]]":
+    """Load models by class: of every class named, and each model or file named; every shipped one when none is."""
+    classes = shipped_by_class()
+    named = sources or list(classes)
+    names = [name for source in named for name in classes.get(source, [source])]
+    by_class: dict[str, list[CompiledModel]] = {}
+    for compiled in load_all_compiled(list(dict.fromkeys(names))):
+        by_class.setdefault(compiled.model.class_name, []).append(compiled)
+    return by_class
+
+
 def shipped_by_class() -> dict[str, list[str]]:
     """Return the names of the shipped models by class; their documents are read, not checked."""
     by_class: dict[str, list[str]] = {}
@@ -70,24 +93,32 @@ def read_object(file: Path) -> dict[str, Any]:
     return loaded
 
 
-def read_assignments(assignments: list[str] | None, values_file: Path | None) -> dict[str, float]:
+def read_assignments(
+    model: "ProceduralModel", assignments: list[str] | None, values_file: Path | None
+) -> dict[str, float]:
     """Read ``name=value`` options on top of a JSON file ``{"name": value}``; values are relative, 1 is the base.
+
+    The value of a choice may be the name of an option.
 
     Raises:
         ParameterError: not of that form.
     """
+    options = {parameter.name: {option: x for x, option in parameter.named_options()} for parameter in model.parameters}
     values: dict[str, float] = {}
     if values_file is not None:
         for name, value in read_object(values_file).items():
+            value = options.get(name, {}).get(value, value) if isinstance(value, str) else value
             if isinstance(value, bool) or not isinstance(value, int | float):
                 raise ParameterError(f"not a number: {value!r}", where=f"{values_file}: {name}")
             values[name] = float(value)
     for assignment in assignments or []:
-        name, equals, text = assignment.partition("=")
+        name, equals, text = (part.strip() for part in assignment.partition("="))
+        known = options.get(name, {})
         try:
-            values[name.strip()] = float(text)
+            values[name] = known[text] if text in known else float(text)
         except ValueError:
             equals = ""
         if not equals:
-            raise ParameterError("expected name=number", where=f"--set {assignment}")
+            named = f" or one of: {', '.join(known)}" if known else ""
+            raise ParameterError(f"expected name=number{named}", where=f"--set {assignment}")
     return values

@@ -2,12 +2,12 @@
 
 import time
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from cli.console import AsJson, print_json, shown_progress
-from cli.sources import load_all_compiled, read_object
+from cli.sources import load_classes, read_object
 from shapewright.errors import ClassifierError
 from shapewright.whole_file import write_whole
 
@@ -16,7 +16,10 @@ def train(
     output: Annotated[Path, typer.Option("--output", "-o", help="Classifier file, .onnx.", show_default=False)],
     models: Annotated[
         list[str] | None,
-        typer.Argument(help="Shipped models or JSON files; default: every shipped model.", show_default=False),
+        typer.Argument(
+            help="Classes, shipped models or JSON files; default: every shipped class with all of its models.",
+            show_default=False,
+        ),
     ] = None,
     variations: Annotated[
         int | None, typer.Option(min=1, help="Random variations of each class (default: 1000).", show_default=False)
@@ -34,7 +37,7 @@ def train(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Train a classifier with pictures of random variations; models of one class are trained together.
+    """Train a classifier with pictures of random variations; the models of a class share its variations evenly.
 
     Examples:
 
@@ -45,9 +48,7 @@ def train(
         raise ClassifierError("classifiers are written as .onnx", where=str(output))
     from shapewright.classification import TrainingSettings, train_classifier
 
-    by_class: dict[str, list[Any]] = {}
-    for compiled in load_all_compiled(models):
-        by_class.setdefault(compiled.model.class_name, []).append(compiled)
+    by_class = load_classes(models)
     options = {"variations": variations, "images_per_variation": images, "epochs": epochs, "seed": seed}
     chosen = read_object(settings_file) if settings_file is not None else {}
     chosen |= {name: value for name, value in options.items() if value is not None}
@@ -56,6 +57,7 @@ def train(
     except TypeError as error:
         raise ClassifierError(f"a setting that there is not, or of a wrong type: {error}") from None
     started_s = time.monotonic()
+    names = {name: [compiled.model.name for compiled in members] for name, members in by_class.items()}
     with shown_progress("training") as progress:
         trained = train_classifier(by_class, settings, progress=progress)
     seconds = time.monotonic() - started_s
@@ -66,6 +68,7 @@ def train(
             {
                 "file": str(output),
                 "class_names": list(trained.class_names),
+                "models": names,
                 "metrics": trained.metrics,
                 "seconds": round(seconds, 3),
             }

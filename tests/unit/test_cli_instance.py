@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from chair_model import armchair
 from command_line import shapewright, write_lamp_model
 
 from shapewright.mesh_file import load_mesh
@@ -31,6 +32,28 @@ def test_set_changes_the_named_parameter_only(lamp: Path, tmp_path: Path) -> Non
     document = shapewright("instance", lamp, "-o", path, "--set", "post_length=2", "--json").document
     assert document["instances"][0]["values"] == {"post_length": 2.0, "post_width": 1.0}
     assert np.ptp(load_mesh(path).bounds, axis=0).max() == pytest.approx(2.3, abs=0.15)
+
+
+def test_an_option_may_be_named_and_random_values_keep_it(tmp_path: Path) -> None:
+    chair = tmp_path / "chair.json"
+    armchair().save(chair)
+    named = ("--set", "back=no back", "--set", "armrests=without")
+    base = shapewright("instance", chair, "-o", tmp_path / "a.off", *named, "--json").document["instances"][0]
+    assert (base["values"]["back"], base["values"]["armrests"]) == (3.0, 0.0)
+    full = shapewright("instance", chair, "-o", tmp_path / "b.off", "--json").document["instances"][0]
+    assert base["face_count"] < full["face_count"]
+    arguments = ("instance", chair, "-o", tmp_path / "c.off", "--random", "--count", 4, *named, "--json")
+    compiled = armchair().compile()
+    for item in shapewright(*arguments).document["instances"]:
+        assert (item["values"]["back"], item["values"]["armrests"]) == (3.0, 0.0)
+        row = np.array([list(item["values"].values())])
+        np.testing.assert_array_equal(compiled.settle(row), row)
+    refused = shapewright("instance", chair, "-o", tmp_path / "d.off", "--set", "back=middle").refused()
+    assert "low back, high back, no back" in refused
+    beyond = shapewright(
+        "instance", chair, "-o", tmp_path / "d.off", "--set", "leg_length=0.6", "--set", "ring_height=1"
+    )
+    assert "given leg_length" in beyond.refused()
 
 
 def test_values_come_from_a_file_too(lamp: Path, tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import pytest
 from command_line import shapewright, write_lamp_model
 from PIL import Image
 
+from cli.sources import load_class, load_classes, shipped_by_class
 from shapewright.mesh_file import load_mesh
 from shapewright.modeling import Recorder
 
@@ -82,6 +83,29 @@ def test_a_query_is_rebuilt_where_it_lies(folder: Path, tmp_path: Path) -> None:
     assert "layer" in printed.stdout
 
 
+def test_of_several_models_the_best_one_is_found(folder: Path, tmp_path: Path) -> None:
+    small = tmp_path / "small.json"
+    small.write_text('{"surface_points": 50, "image_size": 16, "subdivision_steps": 0, "step_sizes": [0.5]}')
+    arguments = (
+        "estimate", folder / "query-lamp.off", "-m", folder / "slab.json", "-m", folder / "lamp.json",
+        "--samples", 30, "--settings", small,
+    )  # fmt: skip
+    document = shapewright(*arguments, "--json").document
+    assert document["model"] == "lamp"
+    assert [one["model_name"] for one in document["models_tried"]] == ["lamp", "slab"]
+    assert document["parameters"][0]["active"]
+    assert "fitted with the model lamp" in shapewright(*arguments).stdout
+
+
+def test_a_class_is_all_of_its_models() -> None:
+    shipped = shipped_by_class()
+    assert list(load_classes(None)) == list(shipped)
+    assert [one.model.name for one in load_class("table")] == shipped["table"]
+    both = load_classes(["table", "sword_katana"])
+    assert [one.model.name for one in both["table"]] == shipped["table"]
+    assert [one.model.name for one in both["sword"]] == ["sword_katana"]
+
+
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
@@ -93,6 +117,9 @@ def test_a_query_is_rebuilt_where_it_lies(folder: Path, tmp_path: Path) -> None:
         (("classify", "query-lamp.off", "-c", "query-lamp.off"), "query-lamp.off"),
         (("classify", "missing.off", "-c", "out/classifier.onnx"), "missing.off"),
         (("estimate", "query-lamp.off", "-m", "nothing"), "neither a file nor a shipped model"),
+        (("estimate", "query-lamp.off", "--class", "teapot"), "no such class ships"),
+        (("estimate", "query-lamp.off"), "name models or a class"),
+        (("estimate", "query-lamp.off", "-m", "lamp.json", "--class", "table"), "name models or a class"),
         (("estimate", "missing.off", "-m", "lamp.json"), "missing.off"),
         (("estimate", "query-lamp.off", "-m", "lamp.json", "-o", "fit.step"), "write one of"),
         (("estimate", "query-lamp.off", "-m", "lamp.json", "--picture", "fit.jpg"), ".png"),

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from chair_model import armchair
 from command_line import shapewright, write_lamp_model
 
 if TYPE_CHECKING:
@@ -33,11 +34,41 @@ def test_show_tells_ranges_and_units(lamp: Path) -> None:
     assert document["name"] == "lamp"
     assert document["parameters"][0] == {
         "name": "post_length", "label": "length of the post", "unit": "mm", "base_value": 100.0,
-        "minimum": 0.5, "maximum": 2.0,
+        "minimum": 0.5, "maximum": 2.0, "options": [], "active_when": [], "limits": [],
     }  # fmt: skip
     text = shapewright("models", "show", lamp).stdout
     assert "0.5 … 2" in text
     assert "100 mm" in text
+
+
+def test_show_tells_options_dependences_parts_and_symmetry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "160")
+    path = tmp_path / "armchair.json"
+    armchair().save(path)
+    document = shapewright("models", "show", path, "--json").document
+    back, _, _, arm_height, ring_height = document["parameters"]
+    assert back["options"][1] == {"value": 2.0, "name": "high back"}
+    assert arm_height["active_when"] == [{"parameter": "armrests", "minimum": 1.0, "maximum": 1.0}]
+    assert ring_height["limits"][0]["parameter"] == "leg_length"
+    assert [part["name"] for part in document["parts"]] == ["low back", "high back", "armrests"]
+    assert document["symmetry"] == {"mirrors": ["y"], "axis": None, "order": 1}
+    text = shapewright("models", "show", path).stdout
+    for expected in (
+        "1 low back, 2 high back, 3 no back",
+        "only if armrests is with",
+        "maximum 0.25 + 0.75 leg_length",
+        "part high back: only if back is high back",
+        "symmetry mirror y",
+    ):
+        assert expected in text
+
+
+def test_the_list_names_each_class_once(library_models: "dict[str, ProceduralModel]") -> None:
+    listed = shapewright("models", "list", "--json").document["models"]
+    assert [item["class_name"] for item in listed] == sorted(item["class_name"] for item in listed)
+    lines = shapewright("models", "list").stdout.splitlines()
+    for class_name in {model.class_name for model in library_models.values()}:
+        assert len([line for line in lines if line.startswith(f"{class_name} ")]) == 1
 
 
 def test_validate_accepts_a_good_model(lamp: Path) -> None:

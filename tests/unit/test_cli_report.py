@@ -14,18 +14,34 @@ def _text(table: object) -> str:
     return console.file.getvalue()
 
 
+def _row(label: str, value: float, minimum: float, maximum: float, **rest: object) -> dict[str, object]:
+    row = {"label": label, "value": value, "minimum": minimum, "maximum": maximum}
+    return {"unit": None, "base_value": None, "option": None, "active": True, **row, **rest}
+
+
 def test_a_measure_is_x_times_the_base_value() -> None:
     text = _text(
         parameter_table(
             [
-                {"label": "stem length", "unit": "mm", "value": 1.25, "base_value": 80.0, "minimum": 0.5, "maximum": 2},
-                {"label": "bulge", "unit": None, "value": 0.5, "base_value": None, "minimum": 0.5, "maximum": 1.5},
+                _row("stem length", 1.25, 0.5, 2.0, unit="mm", base_value=80.0),
+                _row("bulge", 0.5, 0.5, 1.5),
             ]
         )
     )
     assert "100 mm" in text
     assert "1.250" in text
     assert "0.5 … 2" in text
+
+
+def test_an_option_has_its_name_and_what_means_nothing_is_inactive() -> None:
+    text = _text(
+        parameter_table([_row("back", 2.0, 1.0, 3.0, option="high"), _row("tilt", 1.0, 0.5, 2.0, active=False)])
+    )
+    option, inactive = text.splitlines()[-3:-1]
+    assert "high" in option
+    assert "●" not in option
+    assert "inactive" in inactive
+    assert "1.000" not in inactive
 
 
 def test_the_bar_shows_where_a_value_lies() -> None:
