@@ -26,8 +26,9 @@ def build() -> ProceduralModel:
     box = _box(recorder)
     barrel = _barrel(recorder, box)
     grips = _grips(recorder, box)
-    mounts = _mounts(recorder, box)
-    belt, sight = _ammunition(recorder, box), post(recorder, upper(recorder, box, 1), (0.05, 0.02, 0.05), top=0.4)
+    _mounts(recorder, box)
+    belt = _ammunition(recorder, box)
+    sight = post(recorder, upper(recorder, box, 1), (0.05, 0.02, 0.05), top=0.4)
     recorder.part("sight", components(sight), present_when=(when("sight", 1),))
     recorder.scale(whole(box, *barrel, *grips, belt, sight), 1.0, "v", pivot=box.component.whole, size="thickness")
     recorder.symmetry(mirrors=("y",), apart=components(belt))
@@ -126,7 +127,7 @@ def _grips(recorder: Recorder, box: Loft) -> list[Loft]:
     return [*arms, handles, stock]
 
 
-def _mounts(recorder: Recorder, box: Loft) -> list[Loft]:
+def _mounts(recorder: Recorder, box: Loft) -> None:
     under = lower(recorder, box, 2)
     cradle = beam(recorder, "-z", [Section(-0.03, 0.14, 0.07), Section(0.08, 0.08, 0.07)], crease="all", anchors=under)
     foot = Target(cradle.rings[1][0], "world")
@@ -150,7 +151,6 @@ def _mounts(recorder: Recorder, box: Loft) -> list[Loft]:
     recorder.part("column", components(column), present_when=(when("mount", COLUMN),))
     recorder.part("tripod", components(tripod), present_when=(when("mount", TRIPOD),))
     recorder.part("bipod", components(legs), present_when=(when("mount", BIPOD),))
-    return [cradle, column, tripod, legs]
 
 
 def _ammunition(recorder: Recorder, box: Loft) -> Loft:
