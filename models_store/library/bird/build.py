@@ -59,8 +59,8 @@ WING = (
     Rib(0.190, -0.092, 0.078, 0.016),
     Rib(0.270, -0.084, 0.070, 0.014),
     Rib(0.345, -0.072, 0.052, 0.012),
-    Rib(0.405, -0.056, 0.026, 0.010),
-    Rib(0.440, -0.036, -0.004, 0.008),
+    Rib(0.405, -0.060, 0.030, 0.010),
+    Rib(0.440, -0.044, 0.004, 0.008),
 )
 NECK_RAISE_DEG, NECK_CURVE_DEG, HEAD_TILT_DEG = 14.0, 10.0, 8.0
 LEG = Leg(length=0.13, thigh=0.030, shank=0.011, knee=0.4, toe=0.05, inside=(0.03, 0.012))
@@ -86,13 +86,13 @@ def _declare(recorder: Recorder) -> None:
         wing_span=(0.65, 1.35, SPAN),
         wing_chord=(0.6, 1.5, CHORD),
         hand_chord=(0.6, 1.35, 1.0),
-        tip_chord=(0.3, 1.8, 1.0),
+        tip_chord=(0.2, 2.2, 1.0),
         wing_thickness=(0.5, 1.8, 1.0),
         wing_sweep=(-1.5, 3.5, SWEEP_DEG),
         hand_sweep=(-1.0, 4.5, HAND_SWEEP_DEG),
         dihedral=(-2.0, 2.5, DIHEDRAL_DEG),
         wing_droop=(-1.0, 2.5, DROOP_DEG),
-        wing_pitch=(-1.5, 2.5, PITCH_DEG),
+        wing_pitch=(-2.0, 3.5, PITCH_DEG),
     )
     declare(
         recorder,

@@ -59,8 +59,8 @@ WING = (
     Rib(0.190, -0.165, 0.104, 0.024),
     Rib(0.260, -0.150, 0.096, 0.020),
     Rib(0.325, -0.125, 0.076, 0.016),
-    Rib(0.375, -0.095, 0.044, 0.013),
-    Rib(0.410, -0.060, 0.004, 0.010),
+    Rib(0.375, -0.100, 0.050, 0.013),
+    Rib(0.410, -0.074, 0.016, 0.010),
 )
 NECK_RAISE_DEG, NECK_CURVE_DEG, HEAD_TILT_DEG = 14.0, 10.0, 8.0
 LEG = Leg(length=0.16, thigh=0.045, shank=0.014, knee=0.4, toe=0.065, inside=(0.04, 0.018))
@@ -86,8 +86,8 @@ def _declare(recorder: Recorder) -> None:
         wing_span=(0.6, 1.35, SPAN),
         wing_chord=(0.55, 1.35, CHORD),
         hand_chord=(0.6, 1.35, 1.0),
-        tip_chord=(0.4, 1.8, 1.0),
-        wing_thickness=(0.4, 2.2, 1.0),
+        tip_chord=(0.3, 1.8, 1.0),
+        wing_thickness=(0.4, 2.6, 1.0),
         wing_sweep=(-2.0, 6.5, SWEEP_DEG),
         hand_sweep=(-1.0, 4.0, HAND_SWEEP_DEG),
         dihedral=(-6.0, 7.5, DIHEDRAL_DEG),
@@ -96,9 +96,9 @@ def _declare(recorder: Recorder) -> None:
     )
     declare(
         recorder,
-        body_length=(0.7, 1.4, 0.33),
-        body_width=(0.5, 1.4, 0.17),
-        body_height=(0.5, 1.4, 0.172),
+        body_length=(0.6, 1.4, 0.33),
+        body_width=(0.5, 1.6, 0.17),
+        body_height=(0.5, 1.6, 0.172),
         neck_length=(0.5, 2.5, 0.11),
         neck_thickness=(0.65, 1.15, 1.0),
         neck_raise=(-2.0, 4.0, NECK_RAISE_DEG),
