@@ -22,7 +22,7 @@ def tube(
         recorder.extrude(front, 0.0)
         recorder.scale(front, bore, "uv")
         recorder.mark_sharp(front)
-        recorder.extrude(front, -profile[-1][1])
+        recorder.extrude(front, -min(profile[-1][1], 0.55 * (profile[-1][0] - profile[0][0])))
         recorder.mark_sharp(front)
     return made
 

@@ -1,0 +1,1 @@
+"""The procedural model ``gun_ray``: see build.py."""
