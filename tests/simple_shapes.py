@@ -1,6 +1,7 @@
 """Plain shapes and stand-ins for compiled procedural models, for tests of rendering and classification."""
 
 import hashlib
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,6 +84,10 @@ class BoxModel:
 
     def random_values(self, rng: np.random.Generator, count: int) -> Float[np.ndarray, "B P"]:
         return rng.uniform(0.6, 1.6, (count, 3 * len(self.parts)))
+
+    def instances(self, values: Float[np.ndarray, "B P"], steps: int = 2) -> Iterator[TriangleMesh]:
+        for points in self.surface_points(values, steps):
+            yield TriangleMesh(points, self.surface_triangles(steps))
 
     def surface_points(self, values: Float[np.ndarray, "B P"], steps: int = 2) -> Float[np.ndarray, "B V 3"]:
         sizes = values.reshape(len(values), -1, 1, 3) * self.parts[None, :, None, 1]

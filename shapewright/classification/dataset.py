@@ -15,6 +15,7 @@ from jaxtyping import Bool, Float, Int, UInt8
 from shapewright.classification.features import FeatureExtractor
 from shapewright.classification.settings import TrainingSettings
 from shapewright.errors import ClassifierError
+from shapewright.mesh import TriangleMesh
 from shapewright.progress import NULL_PROGRESS, Progress
 from shapewright.rendering.images import render_images
 from shapewright.rendering.views import random_views
@@ -42,15 +43,11 @@ class InstanceGenerator(Protocol):
         ...
 
     def random_values(self, rng: np.random.Generator, count: int) -> Float[np.ndarray, "B P"]:
-        """Parameter values drawn uniformly within their ranges."""
+        """Parameter values drawn uniformly within their ranges, what is not active left at the base."""
         ...
 
-    def surface_points(self, values: Float[np.ndarray, "B P"], steps: int = 2) -> Float[np.ndarray, "B V 3"]:
-        """Vertices of the subdivided surfaces."""
-        ...
-
-    def surface_triangles(self, steps: int = 2) -> Int[np.ndarray, "F 3"]:
-        """Triangles that all instances share."""
+    def instances(self, values: Float[np.ndarray, "B P"], steps: int = 2) -> Iterator[TriangleMesh]:
+        """The subdivided surface of each row, without the parts that it lacks."""
         ...
 
 
@@ -88,8 +85,9 @@ def variation_images(
     views = settings.images_per_variation
     rotations, scales = random_views(rng, BLOCK * views, scale_range=settings.scale_range)
     return render_images(
-        generator.surface_points(values, settings.subdivision_steps),
-        generator.surface_triangles(settings.subdivision_steps),
+        # one by one: a picture is normalised by the vertices that are there (paper section 3.2)
+        list(generator.instances(values, settings.subdivision_steps)),
+        None,
         rotations[: count * views],
         scales[: count * views],
         objects=np.repeat(np.arange(count), views),

@@ -4,10 +4,10 @@ import json
 
 import numpy as np
 import pytest
-from simple_shapes import toy_classes
+from simple_shapes import BoxModel, toy_classes
 
 from shapewright.classification import FeatureExtractor, TrainingSettings, load_backbone, train_classifier
-from shapewright.classification.dataset import BLOCK, class_features, join_classes, variation_images
+from shapewright.classification.dataset import BLOCK, _blocks, class_features, join_classes, variation_images
 from shapewright.classification.head import fit_temperature, train_head
 from shapewright.classification.training import calibration_error, held_out_metrics
 from shapewright.errors import Cancelled, ClassifierError
@@ -73,6 +73,17 @@ def test_several_models_share_a_class():
     alone = extractor(variation_images(cross, 0, 2, settings))
     assert features.shape == (5, 1280)
     assert np.allclose(features[3:], alone, atol=1e-4)
+
+
+@pytest.mark.parametrize(("models", "variations"), [(1, 7), (3, 1000), (4, 1000), (9, 20)])
+def test_variations_are_shared_evenly(models: int, variations: int):
+    generators = [BoxModel(f"box {number}", [((0, 0, 0), (1, 1, 1))]) for number in range(models)]
+    shares = {generator.model.name: 0 for generator in generators}
+    for generator, _, count in _blocks(generators, variations):
+        assert count <= BLOCK
+        shares[generator.model.name] += count
+    assert sum(shares.values()) == variations
+    assert max(shares.values()) - min(shares.values()) <= 1
 
 
 def test_held_out_variations_are_kept_apart_whole():
