@@ -2,7 +2,7 @@ import { expect, it } from "vitest";
 
 import type { Model } from "../src/api/types";
 import { defaultTarget } from "../src/components/EstimationPanel";
-import { byClass, modelNames } from "../src/lib/classes";
+import { byClass, newestVersions } from "../src/lib/classes";
 
 const model = (class_name: string, name: string, created_at = "2026-01-01") =>
   ({ id: `${name} ${created_at}`, class_name, name, created_at }) as Model;
@@ -21,7 +21,11 @@ it("groups models by class, newest version first", () => {
     ["chair", ["armchair 2026-01-01"]],
     ["table", ["table 2026-01-03", "table 2026-01-02", "table_round 2026-01-01"]],
   ]);
-  expect(classes.map(({ models }) => modelNames(models))).toEqual([1, 2]);
+  expect(newestVersions(MODELS).map(({ id }) => id)).toEqual([
+    "armchair 2026-01-01",
+    "table 2026-01-03",
+    "table_round 2026-01-01",
+  ]);
 });
 
 it("estimates with all models of the class that was found", () => {

@@ -4,6 +4,7 @@ import { useClassifiers, useModels, useTrain } from "../api/queries";
 import { isTerminal } from "../api/types";
 import type { Classifier } from "../api/types";
 import { useJob } from "../hooks/useJob";
+import { newestVersions } from "../lib/classes";
 import { count } from "../lib/format";
 import { JobProgress } from "./JobProgress";
 import { Problem } from "./Problem";
@@ -42,13 +43,13 @@ export function ClassifierPicker({ selectedId, onSelect }: ClassifierPickerProps
   const live = useJob(pending?.job_id ?? startedJob);
   const showJob = pending !== undefined || live.snapshot.state === "failed";
   const showForm = !pending && (training || (classifiers.isSuccess && usable.length === 0));
-  const modelCount = models.data?.length ?? 0;
-  const trainable = new Set(models.data?.map((model) => model.class_name)).size >= 2;
+  const current = newestVersions(models.data);
+  const trainable = new Set(current.map((model) => model.class_name)).size >= 2;
 
   const start = () => {
     train.mutate(
       {
-        modelIds: (models.data ?? []).map((model) => model.id),
+        modelIds: current.map((model) => model.id),
         variations: effort.variations,
         imagesPerVariation: effort.imagesPerVariation,
       },
@@ -86,7 +87,7 @@ export function ClassifierPicker({ selectedId, onSelect }: ClassifierPickerProps
           <p>
             {usable.length === 0 ? "No classifier yet. " : ""}
             {trainable
-              ? `Train one on all ${modelCount} models: it learns from random variations alone.`
+              ? `Train one on all ${current.length} models: it learns from random variations alone.`
               : "It tells classes apart and learns from models alone: add models of at least two classes first."}
           </p>
           <fieldset className="segmented" disabled={!trainable}>

@@ -4,7 +4,7 @@ import { useEstimate, useModels } from "../api/queries";
 import type { Estimation, Model } from "../api/types";
 import { useJob } from "../hooks/useJob";
 import { navigate } from "../hooks/useRoute";
-import { byClass, modelNames } from "../lib/classes";
+import { byClass, newestVersions } from "../lib/classes";
 import type { ModelClass } from "../lib/classes";
 import { ago, humanize, parseTime } from "../lib/format";
 import { EstimationResult } from "./EstimationResult";
@@ -89,7 +89,7 @@ export function EstimationPanel({ meshId, foundClass, estimation, estimations }:
                   <optgroup key={name} label={humanize(name)}>
                     {members.length > 1 && (
                       <option value={CLASS + name}>
-                        Any {humanize(name).toLowerCase()}: best of {modelNames(members)}
+                        Any {humanize(name).toLowerCase()}: best of {newestVersions(members).length}
                         {found(name)}
                       </option>
                     )}

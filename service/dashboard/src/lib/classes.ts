@@ -24,7 +24,9 @@ export function byClass(models: Model[] | undefined): ModelClass[] {
     .toSorted((a, b) => a.name.localeCompare(b.name));
 }
 
-/** How many models an estimation for the class tries: versions of one name count once. */
-export function modelNames(models: Model[]): number {
-  return new Set(models.map((model) => model.name)).size;
+/** Of several versions of a model, which share class and name, the newest: what a class consists of. */
+export function newestVersions(models: Model[] | undefined): Model[] {
+  return byClass(models).flatMap(({ models: members }) =>
+    members.filter((model, index) => model.name !== members[index - 1]?.name),
+  );
 }
