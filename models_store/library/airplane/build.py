@@ -6,9 +6,9 @@ the fin, twin fins) is modelled in the same strokes as the usual one.
 
 from pathlib import Path
 
+from models_store.library.aids.lathe import control_diameter
+from models_store.library.aids.sketching import edge_towards, push, put
 from models_store.library.annotations import AnnotatingRecorder, publish_annotated
-from models_store.library.lathe import control_diameter
-from models_store.library.sketching import edge_towards, push, put
 from shapewright.modeling import Component, Element, Mirror, ProceduralModel, Target, when
 
 SIDES = 8

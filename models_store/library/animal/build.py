@@ -5,8 +5,8 @@ The legs are modelled one after another, fore and hind, left and right.
 
 from pathlib import Path
 
+from models_store.library.aids.sketching import grow, push, put
 from models_store.library.annotations import AnnotatingRecorder, publish_annotated
-from models_store.library.sketching import grow, push, put
 from shapewright.modeling import Element, ProceduralModel, when
 
 TRUNK, WIDTH, DEPTH = 0.60, 0.40, 0.46

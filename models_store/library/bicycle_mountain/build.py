@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from models_store.library.aids.bicycle_assembly import NODES, TUBE, chassis, declare, equip
 from models_store.library.author import publish
-from models_store.library.bicycle.assembly import NODES, TUBE, chassis, declare, equip
 from shapewright.modeling import ProceduralModel, Recorder, when
 
 PIVOT, KNEE = (0.44, 0.10), (0.52, 0.24)

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
+from models_store.library.aids.beam import beam
+from models_store.library.aids.bicycle_assembly import NODES, TUBE, chassis, declare, equip
+from models_store.library.aids.loft import Section
 from models_store.library.author import publish
-from models_store.library.beam import beam
-from models_store.library.bicycle.assembly import NODES, TUBE, chassis, declare, equip
-from models_store.library.loft import Section
 from shapewright.modeling import ProceduralModel, Recorder, Target, when
 
 WAIST = (0.375, 0.165)

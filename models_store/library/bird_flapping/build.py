@@ -5,8 +5,7 @@ This one beats its broad wings: they are raised, lowered, pitched or swept back 
 
 from pathlib import Path
 
-from models_store.library.author import publish
-from models_store.library.bird_wings import (
+from models_store.library.aids.bird_wings import (
     DIHEDRAL_DEG,
     DROOP_DEG,
     HAND_SWEEP_DEG,
@@ -15,7 +14,7 @@ from models_store.library.bird_wings import (
     declare_wings,
     model_wings,
 )
-from models_store.library.birds import (
+from models_store.library.aids.birds import (
     LEG_BEND_DEG,
     LEG_SWING_DEG,
     TAIL_RAISE_DEG,
@@ -28,8 +27,9 @@ from models_store.library.birds import (
     side_pair,
     wholes,
 )
-from models_store.library.fins import Rib
-from models_store.library.loft import Section
+from models_store.library.aids.fins import Rib
+from models_store.library.aids.loft import Section
+from models_store.library.author import publish
 from shapewright.modeling import ProceduralModel, Recorder, when
 
 TRUNK = (

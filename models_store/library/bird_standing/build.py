@@ -6,8 +6,7 @@ stay upright.
 
 from pathlib import Path
 
-from models_store.library.author import publish
-from models_store.library.birds import (
+from models_store.library.aids.birds import (
     FOLDED_DROOP_DEG,
     FOLDED_SPREAD_DEG,
     LEG_BEND_DEG,
@@ -26,8 +25,9 @@ from models_store.library.birds import (
     side_pair,
     wholes,
 )
-from models_store.library.fins import Rib, plate
-from models_store.library.loft import Loft, Section
+from models_store.library.aids.fins import Rib, plate
+from models_store.library.aids.loft import Loft, Section
+from models_store.library.author import publish
 from shapewright.modeling import ProceduralModel, Recorder, Target, when
 
 TRUNK = (

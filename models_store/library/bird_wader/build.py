@@ -6,8 +6,7 @@ stay upright.
 
 from pathlib import Path
 
-from models_store.library.author import publish
-from models_store.library.birds import (
+from models_store.library.aids.birds import (
     FOLDED_DROOP_DEG,
     FOLDED_SPREAD_DEG,
     LEG_BEND_DEG,
@@ -25,7 +24,8 @@ from models_store.library.birds import (
     side_pair,
     wholes,
 )
-from models_store.library.loft import Section
+from models_store.library.aids.loft import Section
+from models_store.library.author import publish
 from shapewright.modeling import ProceduralModel, Recorder
 
 TRUNK = (

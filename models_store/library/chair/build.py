@@ -6,8 +6,8 @@ and one leans it back; the rear ends of the armrests lean with it.
 
 from pathlib import Path
 
+from models_store.library.aids.sketching import corner, push, put
 from models_store.library.annotations import AnnotatingRecorder, publish_annotated
-from models_store.library.sketching import corner, push, put
 from shapewright.modeling import Component, Element, Mirror, ProceduralModel, Target, when
 
 WIDTH, DEPTH, THICKNESS = 0.45, 0.43, 0.045

@@ -6,8 +6,7 @@ hung on the finished body.
 
 from pathlib import Path
 
-from models_store.library.author import publish
-from models_store.library.fishes import (
+from models_store.library.aids.fishes import (
     HEAD_TILT_DEG,
     PECTORAL_DROOP_DEG,
     PECTORAL_PITCH_DEG,
@@ -29,6 +28,7 @@ from models_store.library.fishes import (
     size_fin,
     wholes,
 )
+from models_store.library.author import publish
 from shapewright.modeling import ProceduralModel, Recorder, when
 
 LENGTH, HEIGHT, WIDTH, FIN_THICKNESS = 0.40, 0.125, 0.075, 0.006

@@ -6,8 +6,7 @@ fins are hung on the finished body.
 
 from pathlib import Path
 
-from models_store.library.author import publish
-from models_store.library.fishes import (
+from models_store.library.aids.fishes import (
     BEND_DEG,
     HEAD_TILT_DEG,
     PECTORAL_DROOP_DEG,
@@ -31,6 +30,7 @@ from models_store.library.fishes import (
     size_fin,
     wholes,
 )
+from models_store.library.author import publish
 from shapewright.modeling import ProceduralModel, Recorder, when
 
 LENGTH, HEIGHT, WIDTH, FIN_THICKNESS = 0.40, 0.125, 0.075, 0.006

@@ -6,9 +6,9 @@ then the rings get their widths.
 
 from pathlib import Path
 
-from models_store.library import stemware
+from models_store.library.aids import stemware
+from models_store.library.aids.lathe import widen
 from models_store.library.author import publish
-from models_store.library.lathe import widen
 from shapewright.modeling import ProceduralModel, Recorder
 
 FOOT_DIAMETER = 0.50

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from models_store.library import stemware
+from models_store.library.aids import stemware
+from models_store.library.aids.lathe import widen
 from models_store.library.author import publish
-from models_store.library.lathe import widen
 from shapewright.modeling import ProceduralModel, Recorder, when
 
 FOOT_DIAMETER = 0.56

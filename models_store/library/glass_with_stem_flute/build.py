@@ -5,9 +5,9 @@ The bowl is a tulip, a straight cone or a cylinder; its bottom is pointed, round
 
 from pathlib import Path
 
-from models_store.library import stemware
+from models_store.library.aids import stemware
+from models_store.library.aids.lathe import draw_in, widen
 from models_store.library.author import publish
-from models_store.library.lathe import draw_in, widen
 from shapewright.modeling import ProceduralModel, Recorder
 
 FOOT_DIAMETER = 0.30

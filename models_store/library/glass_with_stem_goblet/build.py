@@ -5,9 +5,9 @@ The foot may be hollow up to the waist, a bead may sit on the stem, and the rim 
 
 from pathlib import Path
 
-from models_store.library import stemware
+from models_store.library.aids import stemware
+from models_store.library.aids.lathe import draw_in, widen
 from models_store.library.author import publish
-from models_store.library.lathe import draw_in, widen
 from shapewright.modeling import ProceduralModel, Recorder, Target, group, when
 
 FOOT_DIAMETER = 0.50

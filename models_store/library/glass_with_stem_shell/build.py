@@ -6,9 +6,9 @@ anything from a shallow coupe to a tulip.
 
 from pathlib import Path
 
+from models_store.library.aids.lathe import Lathe, control_diameter, draw_in, widen
+from models_store.library.aids.stemware import SIDES
 from models_store.library.author import publish
-from models_store.library.lathe import Lathe, control_diameter, draw_in, widen
-from models_store.library.stemware import SIDES
 from shapewright.modeling import ProceduralModel, Recorder, group
 
 FOOT_DIAMETER = 0.56

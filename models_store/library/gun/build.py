@@ -6,10 +6,10 @@ straight down and then raked, bent and flared.
 
 from pathlib import Path
 
+from models_store.library.aids.beam import at, beam, lower, upper
+from models_store.library.aids.gun_parts import components, post, trigger, trigger_guard, tube, whole
+from models_store.library.aids.loft import Loft, Section
 from models_store.library.author import publish
-from models_store.library.beam import at, beam, lower, upper
-from models_store.library.gun.parts import components, post, trigger, trigger_guard, tube, whole
-from models_store.library.loft import Loft, Section
 from shapewright.modeling import Component, Mirror, ProceduralModel, Recorder, Target, when
 
 SLIDE_LENGTH, SLIDE_HEIGHT, SLIDE_WIDTH = 0.19, 0.027, 0.025

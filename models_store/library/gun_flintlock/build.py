@@ -5,10 +5,10 @@ Butt and fore-end meet at x = 0. The butt is sketched straight backwards and the
 
 from pathlib import Path
 
+from models_store.library.aids.beam import at, beam, lower, upper
+from models_store.library.aids.gun_parts import components, post, trigger, trigger_guard, tube, whole
+from models_store.library.aids.loft import Loft, Section
 from models_store.library.author import publish
-from models_store.library.beam import at, beam, lower, upper
-from models_store.library.gun.parts import components, post, trigger, trigger_guard, tube, whole
-from models_store.library.loft import Loft, Section
 from shapewright.modeling import Component, ProceduralModel, Recorder, when
 
 BUTT_LENGTH, BUTT_DEPTH, BUTT_BEND_DEG = 0.150, 0.046, 17.0

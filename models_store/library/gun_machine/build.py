@@ -5,10 +5,10 @@ The box begins at x = 0; the mount hangs under its middle.
 
 from pathlib import Path
 
+from models_store.library.aids.beam import at, beam, lower, upper
+from models_store.library.aids.gun_parts import bipod, components, post, tube, whole
+from models_store.library.aids.loft import Loft, Section
 from models_store.library.author import publish
-from models_store.library.beam import at, beam, lower, upper
-from models_store.library.gun.parts import bipod, components, post, tube, whole
-from models_store.library.loft import Loft, Section
 from shapewright.modeling import Mirror, ProceduralModel, Recorder, Target, Turn, when
 
 BOX_LENGTH, BOX_HEIGHT, BOX_WIDTH = 0.62, 0.14, 0.10

@@ -5,10 +5,10 @@ The body begins at x = 0 and swells in its middle; the grip hangs under its rear
 
 from pathlib import Path
 
+from models_store.library.aids.beam import at, beam, lower, upper
+from models_store.library.aids.gun_parts import components, trigger, trigger_guard, tube, whole
+from models_store.library.aids.loft import Loft, Section
 from models_store.library.author import publish
-from models_store.library.beam import at, beam, lower, upper
-from models_store.library.gun.parts import components, trigger, trigger_guard, tube, whole
-from models_store.library.loft import Loft, Section
 from shapewright.modeling import ProceduralModel, Recorder, Target, when
 
 BODY_LENGTH, BODY_DIAMETER = 0.20, 0.085

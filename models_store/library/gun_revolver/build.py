@@ -6,10 +6,10 @@ below on the frame behind it, so cylinder and frame grow together.
 
 from pathlib import Path
 
+from models_store.library.aids.beam import at, beam, lower, upper
+from models_store.library.aids.gun_parts import components, post, trigger, trigger_guard, tube, whole
+from models_store.library.aids.loft import Loft, Section
 from models_store.library.author import publish
-from models_store.library.beam import at, beam, lower, upper
-from models_store.library.gun.parts import components, post, trigger, trigger_guard, tube, whole
-from models_store.library.loft import Loft, Section
 from shapewright.modeling import Component, ProceduralModel, Recorder, group, when
 
 SHIELD = 0.030  # length of the frame behind the cylinder

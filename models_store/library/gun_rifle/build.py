@@ -6,9 +6,8 @@ on it. The butt is sketched straight and then dropped.
 
 from pathlib import Path
 
-from models_store.library.author import publish
-from models_store.library.beam import at, beam, lower, upper
-from models_store.library.gun.parts import (
+from models_store.library.aids.beam import at, beam, lower, upper
+from models_store.library.aids.gun_parts import (
     bipod,
     components,
     curved_magazine,
@@ -20,7 +19,8 @@ from models_store.library.gun.parts import (
     tube,
     whole,
 )
-from models_store.library.loft import Loft, Section
+from models_store.library.aids.loft import Loft, Section
+from models_store.library.author import publish
 from shapewright.modeling import Component, ProceduralModel, Recorder, when
 
 BUTT_LENGTH, BUTT_HEIGHT, BUTT_DROP_DEG = 0.36, 0.115, 5.0

@@ -5,10 +5,10 @@ The receiver begins at x = 0. The barrels are sketched one for each kind, at the
 
 from pathlib import Path
 
+from models_store.library.aids.beam import at, beam, lower, upper
+from models_store.library.aids.gun_parts import components, post, scope, trigger, trigger_guard, tube, whole
+from models_store.library.aids.loft import Loft, Section
 from models_store.library.author import publish
-from models_store.library.beam import at, beam, lower, upper
-from models_store.library.gun.parts import components, post, scope, trigger, trigger_guard, tube, whole
-from models_store.library.loft import Loft, Section
 from shapewright.modeling import Component, Mirror, ProceduralModel, Recorder, Target, when
 
 RECEIVER_LENGTH, RECEIVER_HEIGHT, RECEIVER_WIDTH = 0.20, 0.060, 0.040

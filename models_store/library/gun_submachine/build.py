@@ -6,9 +6,8 @@ above and below) are parts that choices select.
 
 from pathlib import Path
 
-from models_store.library.author import publish
-from models_store.library.beam import at, beam, lower, upper
-from models_store.library.gun.parts import (
+from models_store.library.aids.beam import at, beam, lower, upper
+from models_store.library.aids.gun_parts import (
     bipod,
     components,
     curved_magazine,
@@ -20,7 +19,8 @@ from models_store.library.gun.parts import (
     tube,
     whole,
 )
-from models_store.library.loft import Loft, Section
+from models_store.library.aids.loft import Loft, Section
+from models_store.library.author import publish
 from shapewright.modeling import Element, ProceduralModel, Recorder, Target, when
 
 RECEIVER_LENGTH, RECEIVER_HEIGHT, WIDTH = 0.24, 0.062, 0.042

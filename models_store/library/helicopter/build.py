@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from models_store.library.airframe import Fin, Hull, Tailplane, engine, fin, hull, tailplane
+from models_store.library.aids.airframe import Fin, Hull, Tailplane, engine, fin, hull, tailplane
+from models_store.library.aids.beam import upper
+from models_store.library.aids.loft import Section
+from models_store.library.aids.rotors import Mast, Rotor, main_rotor, tail_rotor
+from models_store.library.aids.undercarriage import Gear, undercarriage
 from models_store.library.author import publish
-from models_store.library.beam import upper
-from models_store.library.loft import Section
-from models_store.library.rotors import Mast, Rotor, main_rotor, tail_rotor
-from models_store.library.undercarriage import Gear, undercarriage
 from shapewright.modeling import ProceduralModel, Recorder, Target
 
 HULL = Hull(

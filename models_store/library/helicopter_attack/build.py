@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from models_store.library.airframe import (
+from models_store.library.aids.airframe import (
     Fin,
     Hull,
     Pods,
@@ -16,11 +16,11 @@ from models_store.library.airframe import (
     tailplane,
     whole,
 )
+from models_store.library.aids.beam import lower, upper
+from models_store.library.aids.loft import Loft, Section, loft
+from models_store.library.aids.rotors import Mast, Rotor, main_rotor, tail_rotor
+from models_store.library.aids.undercarriage import Gear, undercarriage
 from models_store.library.author import publish
-from models_store.library.beam import lower, upper
-from models_store.library.loft import Loft, Section, loft
-from models_store.library.rotors import Mast, Rotor, main_rotor, tail_rotor
-from models_store.library.undercarriage import Gear, undercarriage
 from shapewright.modeling import Mirror, ProceduralModel, Recorder, Target, when
 
 HULL = Hull(

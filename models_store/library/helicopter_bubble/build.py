@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from models_store.library.airframe import Fin, Tailplane, fin, tailplane, whole
-from models_store.library.arthropod import bulb
+from models_store.library.aids.airframe import Fin, Tailplane, fin, tailplane, whole
+from models_store.library.aids.arthropod import bulb
+from models_store.library.aids.beam import beam, upper
+from models_store.library.aids.loft import Loft, Section, loft, move
+from models_store.library.aids.rotors import Mast, Rotor, main_rotor, tail_rotor
+from models_store.library.aids.undercarriage import Gear, undercarriage
 from models_store.library.author import publish
-from models_store.library.beam import beam, upper
-from models_store.library.loft import Loft, Section, loft, move
-from models_store.library.rotors import Mast, Rotor, main_rotor, tail_rotor
-from models_store.library.undercarriage import Gear, undercarriage
 from shapewright.modeling import Mirror, ProceduralModel, Recorder, Target, when
 
 CABIN_LENGTH, CABIN_WIDTH, CABIN_HEIGHT = 3.5, 1.85, 2.0

@@ -5,9 +5,9 @@ The arms are drawn straight to the sides and then lowered. Left follows right in
 
 from pathlib import Path
 
+from models_store.library.aids.lathe import control_diameter
+from models_store.library.aids.sketching import edge_towards, push, put
 from models_store.library.annotations import AnnotatingRecorder, publish_annotated
-from models_store.library.lathe import control_diameter
-from models_store.library.sketching import edge_towards, push, put
 from shapewright.modeling import Component, Element, ProceduralModel, when
 
 PELVIS = (0.24, 0.36, 0.18)

@@ -5,10 +5,9 @@ Seat and back are cushions through cross-sections. The back is hinged where it m
 
 from pathlib import Path
 
-from models_store.library.author import publish
-from models_store.library.boards import stretch
-from models_store.library.loft import Loft, Section, move
-from models_store.library.office_chair.parts import (
+from models_store.library.aids.boards import stretch
+from models_store.library.aids.loft import Loft, Section, move
+from models_store.library.aids.office_chair_parts import (
     PLATE_THICKNESS,
     PLATE_Z,
     armrests,
@@ -18,6 +17,7 @@ from models_store.library.office_chair.parts import (
     raise_seat,
     swivel_base,
 )
+from models_store.library.author import publish
 from shapewright.modeling import Element, ProceduralModel, Recorder, Target, when
 
 SEAT_WIDTH, SEAT_DEPTH, SEAT_THICKNESS = 0.48, 0.50, 0.09

@@ -5,11 +5,10 @@ The upright is hinged behind the seat and carries the back, so both tilt togethe
 
 from pathlib import Path
 
-from models_store.library.author import publish
-from models_store.library.boards import ACROSS, board, pull, shift, stretch
-from models_store.library.lathe import control_diameter
-from models_store.library.loft import Loft, Section, move
-from models_store.library.office_chair.parts import (
+from models_store.library.aids.boards import ACROSS, board, pull, shift, stretch
+from models_store.library.aids.lathe import control_diameter
+from models_store.library.aids.loft import Loft, Section, move
+from models_store.library.aids.office_chair_parts import (
     PLATE_THICKNESS,
     PLATE_Z,
     armrests,
@@ -19,6 +18,7 @@ from models_store.library.office_chair.parts import (
     raise_seat,
     swivel_base,
 )
+from models_store.library.author import publish
 from shapewright.modeling import Component, Element, ProceduralModel, Recorder, Target, when
 
 SEAT_WIDTH, SEAT_DEPTH, SEAT_THICKNESS = 0.46, 0.44, 0.07

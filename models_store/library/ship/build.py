@@ -6,9 +6,9 @@ its vertices.
 
 from pathlib import Path
 
+from models_store.library.aids.lathe import control_diameter
+from models_store.library.aids.sketching import push, put
 from models_store.library.annotations import AnnotatingRecorder, publish_annotated
-from models_store.library.lathe import control_diameter
-from models_store.library.sketching import push, put
 from shapewright.modeling import Component, Element, Mirror, ProceduralModel, Target, when
 
 MIDDLE, FORE, BOW, AFT = 20.0, 16.0, 12.0, 16.0

@@ -6,9 +6,9 @@ The right side is modelled first, then the left one in operations of its own.
 import math
 from pathlib import Path
 
+from models_store.library.aids.lathe import control_diameter
+from models_store.library.aids.sketching import grow, push, put
 from models_store.library.annotations import AnnotatingRecorder, publish_annotated
-from models_store.library.lathe import control_diameter
-from models_store.library.sketching import grow, push, put
 from shapewright.modeling import Component, Element, Mirror, ProceduralModel, Target, when
 
 SIDES = 12

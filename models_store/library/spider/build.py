@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from models_store.library.arthropod import (
+from models_store.library.aids.arthropod import (
     Feelers,
     LegShape,
     Station,
@@ -16,8 +16,8 @@ from models_store.library.arthropod import (
     resize,
     tilt,
 )
+from models_store.library.aids.loft import Loft, Section, loft
 from models_store.library.author import publish
-from models_store.library.loft import Loft, Section, loft
 from shapewright.modeling import ProceduralModel, Recorder, when
 
 LEGS = LegShape(length=2.4, thickness=0.12, raise_deg=38.0, knee_deg=75.0, ankle_deg=20.0, inset=0.22)

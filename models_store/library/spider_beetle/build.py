@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from models_store.library.arthropod import (
+from models_store.library.aids.arthropod import (
     Feelers,
     LegShape,
     Station,
@@ -15,9 +15,9 @@ from models_store.library.arthropod import (
     lift,
     resize,
 )
+from models_store.library.aids.beam import lower
+from models_store.library.aids.loft import Loft, Section, loft, move
 from models_store.library.author import publish
-from models_store.library.beam import lower
-from models_store.library.loft import Loft, Section, loft, move
 from shapewright.modeling import ProceduralModel, Recorder, when
 
 LEGS = LegShape(

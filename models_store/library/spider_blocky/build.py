@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from models_store.library.arthropod import LegShape, Station, components, flanks, hub, legs, lift, resize, tilt
+from models_store.library.aids.arthropod import LegShape, Station, components, flanks, hub, legs, lift, resize, tilt
+from models_store.library.aids.beam import beam
+from models_store.library.aids.loft import Loft, Section
 from models_store.library.author import publish
-from models_store.library.beam import beam
-from models_store.library.loft import Loft, Section
 from shapewright.modeling import ProceduralModel, Recorder, when
 
 LEGS = LegShape(

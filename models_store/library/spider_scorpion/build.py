@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from models_store.library.arthropod import LegShape, Station, bulb, flanks, legs, resize
+from models_store.library.aids.arthropod import LegShape, Station, bulb, flanks, legs, resize
+from models_store.library.aids.beam import beam
+from models_store.library.aids.loft import Loft, Section, loft
 from models_store.library.author import publish
-from models_store.library.beam import beam
-from models_store.library.loft import Loft, Section, loft
 from shapewright.modeling import Mirror, ProceduralModel, Recorder, Target
 
 LEGS = LegShape(

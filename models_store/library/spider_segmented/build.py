@@ -3,9 +3,21 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from models_store.library.arthropod import Feelers, LegShape, Station, bulb, face, flanks, hub, legs, lift, resize, tilt
+from models_store.library.aids.arthropod import (
+    Feelers,
+    LegShape,
+    Station,
+    bulb,
+    face,
+    flanks,
+    hub,
+    legs,
+    lift,
+    resize,
+    tilt,
+)
+from models_store.library.aids.loft import Loft, Section, loft
 from models_store.library.author import publish
-from models_store.library.loft import Loft, Section, loft
 from shapewright.modeling import Element, ProceduralModel, Recorder, Target
 
 LEGS = LegShape(

@@ -6,9 +6,9 @@ The legs are modelled one after another, each in two pieces: the ring lies where
 import math
 from pathlib import Path
 
+from models_store.library.aids.lathe import control_diameter
+from models_store.library.aids.sketching import push, put
 from models_store.library.annotations import AnnotatingRecorder, publish_annotated
-from models_store.library.lathe import control_diameter
-from models_store.library.sketching import push, put
 from shapewright.modeling import Component, Element, ProceduralModel, Target, Turn, when
 
 SEAT_SIDES, LEG_SIDES, RING_SIDES = 16, 6, 12

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from models_store.library import blades
+from models_store.library.aids import blades
 from models_store.library.author import publish
 from shapewright.modeling import Component, ProceduralModel, Recorder, Target, group, mirrored
 

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from models_store.library import blades, guards
+from models_store.library.aids import blades, guards
+from models_store.library.aids.loft import Section, Vector, loft
+from models_store.library.aids.tubes import tube
 from models_store.library.author import publish
-from models_store.library.loft import Section, Vector, loft
-from models_store.library.tubes import tube
 from shapewright.modeling import Mirror, ProceduralModel, Recorder, Target, when
 
 BLADE_LENGTH, BLADE_WIDTH, BLADE_THICKNESS = 1.0, 0.044, 0.012

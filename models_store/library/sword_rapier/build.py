@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from models_store.library import blades, guards
+from models_store.library.aids import blades, guards
+from models_store.library.aids.tubes import arc, tube
 from models_store.library.author import publish
-from models_store.library.tubes import arc, tube
 from shapewright.modeling import Mirror, ProceduralModel, Recorder, Target, when
 
 BLADE_LENGTH, BLADE_WIDTH, BLADE_THICKNESS = 0.86, 0.028, 0.010

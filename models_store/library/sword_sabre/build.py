@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from models_store.library import blades, guards
+from models_store.library.aids import blades, guards
 from models_store.library.author import publish
 from shapewright.modeling import Mirror, ProceduralModel, Recorder, Target, when
 

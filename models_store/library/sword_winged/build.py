@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from models_store.library import blades, guards
+from models_store.library.aids import blades, guards
+from models_store.library.aids.blades import Grip
+from models_store.library.aids.loft import Loft, Section, Vector, loft
+from models_store.library.aids.tubes import tube
 from models_store.library.author import publish
-from models_store.library.blades import Grip
-from models_store.library.loft import Loft, Section, Vector, loft
-from models_store.library.tubes import tube
 from shapewright.modeling import Mirror, ProceduralModel, Recorder, Target, when
 
 BLADE_LENGTH, BLADE_WIDTH, BLADE_THICKNESS = 0.62, 0.056, 0.012

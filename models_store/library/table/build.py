@@ -5,11 +5,11 @@ Legs and aprons are alternatives that stand in the same place; sizes stretch all
 
 from pathlib import Path
 
+from models_store.library.aids.beam import beam
+from models_store.library.aids.boards import ACROSS, QUADRANTS, board, placed, pull, stretch
+from models_store.library.aids.lathe import control_diameter
+from models_store.library.aids.loft import Loft, Section, move
 from models_store.library.author import publish
-from models_store.library.beam import beam
-from models_store.library.boards import ACROSS, QUADRANTS, board, placed, pull, stretch
-from models_store.library.lathe import control_diameter
-from models_store.library.loft import Loft, Section, move
 from shapewright.modeling import Component, ProceduralModel, Recorder, Target, group, when
 
 LENGTH, WIDTH, THICKNESS = 1.50, 0.80, 0.04

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
+from models_store.library.aids.beam import beam
+from models_store.library.aids.boards import board, shift
+from models_store.library.aids.lathe import Lathe, Ring, control_diameter, widen
+from models_store.library.aids.loft import Loft, Section, move
 from models_store.library.author import publish
-from models_store.library.beam import beam
-from models_store.library.boards import board, shift
-from models_store.library.lathe import Lathe, Ring, control_diameter, widen
-from models_store.library.loft import Loft, Section, move
 from shapewright.modeling import Component, ProceduralModel, Recorder, Target, Turn, group, when
 
 SIDES, COLUMN_SIDES = 12, 8

@@ -6,11 +6,11 @@ Legs hang on a ring of vertices in the underside of the top, so they follow its 
 import math
 from pathlib import Path
 
+from models_store.library.aids.beam import beam
+from models_store.library.aids.boards import ACROSS, QUADRANTS, board, pull, shift, stretch
+from models_store.library.aids.lathe import control_diameter
+from models_store.library.aids.loft import Loft, Section, move
 from models_store.library.author import publish
-from models_store.library.beam import beam
-from models_store.library.boards import ACROSS, QUADRANTS, board, pull, shift, stretch
-from models_store.library.lathe import control_diameter
-from models_store.library.loft import Loft, Section, move
 from shapewright.modeling import Component, Element, ProceduralModel, Recorder, Target, Turn, group, when
 
 SIDES = 12

@@ -5,11 +5,11 @@ Legs stay straight, so that rails meet them at any height. Everything hangs bene
 
 from pathlib import Path
 
+from models_store.library.aids.beam import beam
+from models_store.library.aids.boards import ACROSS, QUADRANTS, board, placed, pull, shift, spread, stretch
+from models_store.library.aids.lathe import control_diameter
+from models_store.library.aids.loft import Loft, Section
 from models_store.library.author import publish
-from models_store.library.beam import beam
-from models_store.library.boards import ACROSS, QUADRANTS, board, placed, pull, shift, spread, stretch
-from models_store.library.lathe import control_diameter
-from models_store.library.loft import Loft, Section
 from shapewright.modeling import Component, ProceduralModel, Recorder, Target, when
 from shapewright.modeling.elements import Axis
 

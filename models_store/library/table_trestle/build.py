@@ -5,8 +5,8 @@ The supports are alternatives, all of the same depth and height; the underside o
 
 from pathlib import Path
 
+from models_store.library.aids.boards import ACROSS, QUADRANTS, board, pull, shift, spread, stretch, strut
 from models_store.library.author import publish
-from models_store.library.boards import ACROSS, QUADRANTS, board, pull, shift, spread, stretch, strut
 from shapewright.modeling import Component, ProceduralModel, Recorder, Target, group, when
 
 LENGTH, WIDTH, THICKNESS = 1.60, 0.80, 0.04

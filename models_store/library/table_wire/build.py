@@ -5,9 +5,9 @@ Each rod ends where others do and is pulled along with them. The underside of th
 
 from pathlib import Path
 
+from models_store.library.aids.boards import ACROSS, QUADRANTS, board, pull, shift, stretch, strut
+from models_store.library.aids.lathe import control_diameter
 from models_store.library.author import publish
-from models_store.library.boards import ACROSS, QUADRANTS, board, pull, shift, stretch, strut
-from models_store.library.lathe import control_diameter
 from shapewright.modeling import Component, ProceduralModel, Recorder, Target, group, when
 
 SIDES = 12

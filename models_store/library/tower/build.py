@@ -6,9 +6,9 @@ The round, the square and the octagonal tower are modelled in the same strokes; 
 import math
 from pathlib import Path
 
+from models_store.library.aids.lathe import control_diameter
+from models_store.library.aids.sketching import put
 from models_store.library.annotations import AnnotatingRecorder, publish_annotated
-from models_store.library.lathe import control_diameter
-from models_store.library.sketching import put
 from shapewright.modeling import Component, Element, ProceduralModel, Target, Turn, when
 
 ROUND_SIDES = 16

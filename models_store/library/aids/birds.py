@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from models_store.library.fins import Fan, Rib, fan, plate, with_parts
-from models_store.library.loft import Loft, Section, Vector, loft, move, pair
+from models_store.library.aids.fins import Fan, Rib, fan, plate, with_parts
+from models_store.library.aids.loft import Loft, Section, Vector, loft, move, pair
 from shapewright.modeling import Condition, Element, Recorder, Target
 
 LABELS = {

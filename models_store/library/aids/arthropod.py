@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from models_store.library.beam import at
-from models_store.library.loft import ORIGIN, Loft, Section, Vector, loft, move
+from models_store.library.aids.beam import at
+from models_store.library.aids.loft import ORIGIN, Loft, Section, Vector, loft, move
 from shapewright.modeling import Component, Condition, Element, Mirror, Recorder, Target, when
 
 LEG_SIDES = 4

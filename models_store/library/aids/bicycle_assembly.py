@@ -7,7 +7,7 @@ cranks and handlebars are put on after that and follow.
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from models_store.library.bicycle.parts import (
+from models_store.library.aids.bicycle_parts import (
     carrier,
     cranks,
     declare_cranks,
@@ -21,8 +21,8 @@ from models_store.library.bicycle.parts import (
     transmission,
     wheels,
 )
-from models_store.library.bicycle.skeleton import Point, Skeleton
-from models_store.library.loft import Loft
+from models_store.library.aids.bicycle_skeleton import Point, Skeleton
+from models_store.library.aids.loft import Loft
 from shapewright.modeling import Recorder, Target
 
 NODES: dict[str, Point] = {

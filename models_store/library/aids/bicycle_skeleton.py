@@ -3,8 +3,8 @@
 import math
 from collections import defaultdict
 
-from models_store.library.beam import Crease, beam
-from models_store.library.loft import Loft, Section, move
+from models_store.library.aids.beam import Crease, beam
+from models_store.library.aids.loft import Loft, Section, move
 from shapewright.modeling import Element, Mirror, Recorder, Target
 
 Point = tuple[float, float]

@@ -8,7 +8,7 @@ size and out again by x times the base size, and so nothing at x = 1.
 import math
 from collections.abc import Iterable, Sequence
 
-from models_store.library.loft import Vector, move
+from models_store.library.aids.loft import Vector, move
 from shapewright.modeling import Component, Element, Mirror, Recorder, Target
 from shapewright.modeling.elements import AXES, Axis, Image
 

@@ -6,10 +6,10 @@ Names of parameters that these guards vary: ``bar_length``, ``bar_thickness``, `
 
 import math
 
-from models_store.library.blades import Grip
-from models_store.library.lathe import Lathe, Ring, control_diameter, widen
-from models_store.library.loft import Loft, Vector
-from models_store.library.tubes import tube
+from models_store.library.aids.blades import Grip
+from models_store.library.aids.lathe import Lathe, Ring, control_diameter, widen
+from models_store.library.aids.loft import Loft, Vector
+from models_store.library.aids.tubes import tube
 from shapewright.modeling import Component, Mirror, Recorder, Target, group
 
 DISC_SIDES = 12

@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from models_store.library.lathe import Lathe, Ring
+from models_store.library.aids.lathe import Lathe, Ring
 from shapewright.errors import ModelError
 from shapewright.modeling import Component, Element, Mirror, Recorder, Target
 from shapewright.modeling.elements import Axis, Image
@@ -112,7 +112,7 @@ def loft(
     across = [name for name in "xyz" if name != axis]
     place = dict(zip("xyz", offset, strict=True))
     place[axis] += first.at
-    size = (1.0, 1.0, second.at - first.at)
+    size = (1.0, 1.0, round(second.at - first.at, 9))
     components = recorder.base("prism", size, sides=sides, offset=(place["x"], place["y"], place["z"]), anchors=anchors)
     columns = [Lathe(recorder, component) for component in components]
     rings = [tuple(column.bottom for column in columns), tuple(column.top for column in columns)]
@@ -122,7 +122,7 @@ def loft(
         recorder.rotate(standing.body(hinge=0), angle_deg, about)
     tops = [component.top for component in components]
     for before, after in pairwise(sections[1:]):
-        recorder.extrude([Target((top,)) for top in tops], after.at - before.at)
+        recorder.extrude([Target((top,)) for top in tops], round(after.at - before.at, 9))
         rings.append(tuple(tuple(recorder.vertices_of(top)) for top in tops))
     made = Loft(tuple(components), images, tuple(rings))
     for number, section in enumerate(sections):

@@ -9,10 +9,10 @@ from typing import Literal
 
 import numpy as np
 
-from models_store.library.beam import beam
-from models_store.library.boards import ACROSS, TOLERANCE, board, placed, pull, shift, stretch
-from models_store.library.lathe import Lathe, Ring, control_diameter, widen
-from models_store.library.loft import ORIGIN, Loft, Section, Vector, loft, move
+from models_store.library.aids.beam import beam
+from models_store.library.aids.boards import ACROSS, TOLERANCE, board, placed, pull, shift, stretch
+from models_store.library.aids.lathe import Lathe, Ring, control_diameter, widen
+from models_store.library.aids.loft import ORIGIN, Loft, Section, Vector, loft, move
 from shapewright.modeling import Component, Recorder, Target, Turn, when
 
 FEET = (5, 4)

@@ -7,7 +7,7 @@ on each other, so that every combination is a bowl: widening a level takes all l
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from models_store.library.lathe import Lathe, Ring, control_diameter, widen
+from models_store.library.aids.lathe import Lathe, Ring, control_diameter, widen
 from shapewright.modeling import Component, Recorder, Target, group
 
 SIDES = 12

@@ -9,8 +9,8 @@ from typing import Literal
 
 import numpy as np
 
-from models_store.library.lathe import Ring
-from models_store.library.loft import ORIGIN, Loft, Section, Vector, move
+from models_store.library.aids.lathe import Ring
+from models_store.library.aids.loft import ORIGIN, Loft, Section, Vector, move
 from shapewright.modeling import Element, Recorder, Target
 from shapewright.modeling.elements import Axis
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from models_store.library.beam import beam
-from models_store.library.loft import Loft, Section, loft
+from models_store.library.aids.beam import beam
+from models_store.library.aids.loft import Loft, Section, loft
 from shapewright.errors import ModelError
 from shapewright.modeling import Component, Condition, Element, Recorder, Target, Turn, when
 

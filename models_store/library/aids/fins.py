@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
 
-from models_store.library.lathe import control_diameter
-from models_store.library.loft import ORIGIN, Loft, Section, Vector, loft
+from models_store.library.aids.lathe import control_diameter
+from models_store.library.aids.loft import ORIGIN, Loft, Section, Vector, loft
 from shapewright.modeling import Element, Recorder, Target
 from shapewright.modeling.elements import Axis
 

@@ -3,8 +3,8 @@
 The muzzle points to +x. Every part hangs on an anchor and reaches a little into the body that bears it.
 """
 
-from models_store.library.beam import beam
-from models_store.library.loft import Loft, Section
+from models_store.library.aids.beam import beam
+from models_store.library.aids.loft import Loft, Section
 from shapewright.modeling import Component, Mirror, Recorder, Target, group
 
 ROUND = 1.1

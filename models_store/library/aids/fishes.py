@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal
 
-from models_store.library.fins import Fan, Rib, fan, plate
-from models_store.library.loft import Loft, Section, loft, pair
+from models_store.library.aids.fins import Fan, Rib, fan, plate
+from models_store.library.aids.loft import Loft, Section, loft, pair
 from shapewright.modeling import Condition, Element, Recorder, Target
 
 Profile = tuple[tuple[float, float, float], ...]

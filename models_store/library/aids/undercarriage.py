@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from models_store.library.beam import at, beam, lower
-from models_store.library.loft import Loft, Section, loft
+from models_store.library.aids.beam import at, beam, lower
+from models_store.library.aids.loft import Loft, Section, loft
 from shapewright.modeling import Component, Condition, Element, Mirror, Recorder, Target, when
 
 WHEEL_SIDES = 8

@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 
-from models_store.library.lathe import Lathe
-from models_store.library.loft import Loft, Vector
+from models_store.library.aids.lathe import Lathe
+from models_store.library.aids.loft import Loft, Vector
 from shapewright.modeling import Recorder, Target
 from shapewright.modeling.elements import Axis
 

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from models_store.library.birds import Bird, side_pair, wholes
-from models_store.library.fins import Rib, plate, with_parts
-from models_store.library.loft import Loft
+from models_store.library.aids.birds import Bird, side_pair, wholes
+from models_store.library.aids.fins import Rib, plate, with_parts
+from models_store.library.aids.loft import Loft
 from shapewright.modeling import Element, Recorder, Target, when
 
 HAND_SWEEP_DEG, DROOP_DEG, PITCH_DEG, SWEEP_DEG, DIHEDRAL_DEG = 12.0, 15.0, 8.0, 8.0, 8.0

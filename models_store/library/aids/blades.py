@@ -12,8 +12,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from models_store.library.lathe import Lathe, Ring, control_diameter, widen
-from models_store.library.loft import move
+from models_store.library.aids.lathe import Lathe, Ring, control_diameter, widen
+from models_store.library.aids.loft import move
 from shapewright.modeling import Component, Element, Mirror, Recorder, Target, group
 
 HILT_SIDES = 8

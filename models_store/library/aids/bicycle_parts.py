@@ -5,10 +5,10 @@ The bicycle drives to +x, its left side is +y. Every part hangs on an axle or tu
 
 import math
 
-from models_store.library.beam import beam
-from models_store.library.bicycle.skeleton import Skeleton, middle
-from models_store.library.lathe import control_diameter
-from models_store.library.loft import Loft, Section
+from models_store.library.aids.beam import beam
+from models_store.library.aids.bicycle_skeleton import Skeleton, middle
+from models_store.library.aids.lathe import control_diameter
+from models_store.library.aids.loft import Loft, Section
 from shapewright.modeling import Component, Element, Mirror, Recorder, Target, Turn, when
 from shapewright.modeling.elements import Image
 
