@@ -39,10 +39,15 @@ def distinct_values(space: ParameterSpace, column: int, row: Float[np.ndarray, "
 
 def _fulfil(space: ParameterSpace, column: int, row: Float[np.ndarray, " P"]) -> None:
     """Move what the activity of a parameter depends on, the parameters before it, just as far as needed."""
-    for condition in space.parameters[column].active_when:
-        other = space.columns[condition.parameter]
-        _fulfil(space, other, row)
-        low = max(condition.minimum, space.minimum[other])
-        high = min(condition.maximum, space.maximum[other])
-        x = min(max(row[other], low), high)
-        row[other] = np.ceil(x) if space.parameters[other].options else x
+    wanted = {column}
+    for i in range(column, -1, -1):  # a parameter depends on those before it only, so each is looked at once
+        if i not in wanted:
+            continue
+        for condition in space.parameters[i].active_when:
+            other = space.columns[condition.parameter]
+            wanted.add(other)
+            low = max(condition.minimum, space.minimum[other])
+            high = min(condition.maximum, space.maximum[other])
+            if space.parameters[other].options:
+                low, high = np.ceil(low), np.floor(high)
+            row[other] = min(max(row[other], low), high)

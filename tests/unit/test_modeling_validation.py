@@ -295,3 +295,28 @@ def test_a_parameter_is_looked_at_where_it_is_active() -> None:
     assert row.tolist() == [2, 1, 1]
     assert distinct_values(space, 2, row)[:, 2].tolist() == [0.5, 2.0]
     assert distinct_values(space, 0, space.base_values())[:, 0].tolist() == [1, 2, 3]
+
+
+def test_many_conditions_on_one_another_are_settled_in_one_pass() -> None:
+    recorder = Recorder("chain", "box")
+    recorder.box(1.0, 1.0, 1.0)
+    for i in range(60):
+        before = f"kind{i - 1}"
+        conditions = [when(before, 2), when(before, 1.5, 2.5)] if i else []
+        recorder.choice(f"kind{i}", "Kind", ("one", "two", "three"), active_when=conditions)
+    space = recorder.build().compile().space
+    row = active_row(space, 59)
+    assert row is not None
+    assert row.tolist() == [2.0] * 59 + [1.0]
+
+
+def test_a_choice_is_moved_to_an_option_within_the_condition() -> None:
+    recorder = Recorder("nested", "box")
+    recorder.choice("kind", "Kind", ("one", "two", "three", "four"))
+    recorder.switch("knob", "Knob", active_when=[when("kind", 1.5, 2.5)])
+    recorder.box(1.0, 1.0, 1.0)
+    space = recorder.build().compile().space
+    for start in (1.0, 4.0):
+        row = active_row(space, 1, np.array([start, 1.0]))
+        assert row is not None
+        assert row.tolist() == [2.0, 1.0]
