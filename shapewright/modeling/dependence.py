@@ -6,7 +6,15 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from shapewright.errors import ModelError
-from shapewright.modeling.fields import MAX_MAGNITUDE, NUMBER_SCHEMA, choice, read_number, read_object, write_number
+from shapewright.modeling.fields import (
+    MAX_MAGNITUDE,
+    NUMBER_SCHEMA,
+    choice,
+    read_number,
+    read_object,
+    shown,
+    write_number,
+)
 
 MAX_CONDITIONS = 20
 MAX_LIMITS = 20
@@ -23,7 +31,7 @@ class Condition:
 
     def __post_init__(self) -> None:
         if not -MAX_MAGNITUDE <= self.minimum <= self.maximum <= MAX_MAGNITUDE:
-            raise ModelError(f"the condition on {self.parameter!r} has an empty or endless range")
+            raise ModelError(f"the condition on {shown(self.parameter)} has an empty or endless range")
 
     @classmethod
     def from_document(cls, document: Any, where: str) -> "Condition":
@@ -33,7 +41,11 @@ class Condition:
         if not isinstance(bounds, list) or len(bounds) != 2:
             raise ModelError("a range is a list of two numbers", where=f"{where}.range")
         low, high = (read_number(bound, f"{where}.range[{i}]") for i, bound in enumerate(bounds))
-        return cls(_read_reference(item, where), low, high)
+        parameter = _read_reference(item, where)
+        try:
+            return cls(parameter, low, high)
+        except ModelError as error:
+            raise ModelError(error.message, where=f"{where}.range") from None
 
     def to_document(self) -> dict[str, Any]:
         """Return the JSON object."""
@@ -67,7 +79,7 @@ class Limit:
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(n) and abs(n) <= MAX_MAGNITUDE for n in (self.offset, self.factor)):
-            raise ModelError(f"the limit by {self.parameter!r} is not finite or too large")
+            raise ModelError(f"the limit by {shown(self.parameter)} is not finite or too large")
 
     @classmethod
     def from_document(cls, document: Any, where: str) -> "Limit":

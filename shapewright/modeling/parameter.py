@@ -87,6 +87,8 @@ class Parameter:
             raise ModelError(f"the range of {self.name!r} must hold one whole number for each of its options")
         if any(not option.strip() or len(option) > MAX_LABEL for option in self.options):
             raise ModelError(f"an option of {self.name!r} is empty or longer than {MAX_LABEL} characters")
+        if len(set(self.options)) < len(self.options):
+            raise ModelError(f"{self.name!r} has two options of one name")
         if self.options and self.minimum != int(self.minimum):
             raise ModelError(f"the options of {self.name!r} must begin at a whole number")
         if self.options and (self.limits or self.base_value is not None):
@@ -192,11 +194,16 @@ class Parameter:
                 "options": {
                     "type": "array",
                     "maxItems": MAX_OPTIONS,
+                    "uniqueItems": True,
                     "items": {"type": "string", "pattern": "\\S", "maxLength": MAX_LABEL},
                 },
                 "active_when": CONDITIONS_SCHEMA,
                 "limits": LIMITS_SCHEMA,
             },
+            "anyOf": [
+                {"properties": {"targets": {"minItems": 1}}},
+                {"properties": {"options": {"minItems": 1}}, "required": ["options"]},
+            ],
             "required": ["name", "label", "range", "targets"],
             "additionalProperties": False,
         }

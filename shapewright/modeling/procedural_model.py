@@ -13,6 +13,7 @@ from shapewright.modeling.compiled import CompiledModel
 from shapewright.modeling.fields import read_object, shown
 from shapewright.modeling.operations import OPERATIONS, Base, Operation
 from shapewright.modeling.parameter import NAME_PATTERN, Parameter
+from shapewright.modeling.parameter_space import ParameterSpace
 from shapewright.modeling.part import MAX_PARTS, Part
 from shapewright.modeling.symmetry import NO_SYMMETRY, Symmetry
 from shapewright.modeling.upgrade import FORMAT, VERSION, upgrade_document
@@ -22,6 +23,7 @@ MAX_OPERATIONS = 5_000
 MAX_PARAMETERS = 200
 MAX_DOCUMENT_BYTES = 16 * 2**20
 MAX_DESCRIPTION = 5_000
+_MAX_ITEMS = {"operations": MAX_OPERATIONS, "parameters": MAX_PARAMETERS, "parts": MAX_PARTS}
 
 
 @dataclass(frozen=True)
@@ -55,12 +57,9 @@ class ProceduralModel:
             raise ModelError(f"a text of at most {MAX_DESCRIPTION} characters is needed", where="description")
         if not self.operations or not isinstance(self.operations[0], Base):
             raise ModelError("the first operation must be a base", where="operations")
-        if len(self.operations) > MAX_OPERATIONS:
-            raise ModelError(f"more than {MAX_OPERATIONS} operations", where="operations")
-        if len(self.parameters) > MAX_PARAMETERS:
-            raise ModelError(f"more than {MAX_PARAMETERS} parameters", where="parameters")
-        if len(self.parts) > MAX_PARTS:
-            raise ModelError(f"more than {MAX_PARTS} parts", where="parts")
+        for name, most in _MAX_ITEMS.items():
+            if len(getattr(self, name)) > most:
+                raise ModelError(f"more than {most} {name}", where=name)
         seen: set[str] = set()
         for i, parameter in enumerate(self.parameters):
             if parameter.name in seen:
@@ -77,6 +76,9 @@ class ProceduralModel:
                         f"{operation.kind} has no mode {shown(target.mode)}; it has: {known}",
                         where=f"{place}.mode",
                     )
+        space = ParameterSpace(self.parameters)
+        for number, part in enumerate(self.parts):
+            space.check_conditions(part.present_when, f"parts[{number}].present_when")
 
     def compile(self) -> CompiledModel:
         """Build the topology once; the result evaluates batches of parameters.
@@ -128,11 +130,11 @@ class ProceduralModel:
             raise ModelError(f"a text of at most {MAX_DESCRIPTION} characters is needed", where="description")
         if not isinstance(closed, bool):
             raise ModelError("true or false is needed", where="closed")
-        for part in ("operations", "parameters", "parts"):
-            if not isinstance(item.get(part, []), list):
-                raise ModelError("a list is needed", where=part)
-        if len(item["operations"]) > MAX_OPERATIONS:
-            raise ModelError(f"more than {MAX_OPERATIONS} operations", where="operations")
+        for name, most in _MAX_ITEMS.items():
+            if not isinstance(item.get(name, []), list):
+                raise ModelError("a list is needed", where=name)
+            if len(item.get(name, [])) > most:
+                raise ModelError(f"more than {most} {name}", where=name)
         return cls(
             name=item["name"],
             class_name=item["class"],

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from shapewright.errors import ModelError
-from shapewright.modeling import ProceduralModel, Recorder, json_schema, mirrored, turned
+from shapewright.modeling import Element, ProceduralModel, Recorder, json_schema, mirrored, turned, when
 from shapewright.modeling.elements import edge, vertex
 
 SCHEMA = jsonschema.Draft202012Validator(dict(json_schema()))
@@ -24,6 +24,17 @@ BEYOND_A_SCHEMA = (
     "there is no operation",
     "has no mode",
     "a second parameter",
+    "one whole number for each of its options",
+    "must begin at a whole number",
+    "neither limits nor a base value",
+    "there is no parameter",
+    "never comes there",
+    "has an empty or endless range",  # of a condition, [2, 1]
+    "shuts out 1, the base model",
+    "the limit leaves no value",
+    "must consist of components",
+    "only components can be apart",
+    "an axis needs an order above 1",
 )
 
 
@@ -31,12 +42,13 @@ def every_operation() -> dict[str, Any]:
     """Return a document with every operation and every kind of field."""
     recorder = Recorder("all", "all", description="every operation", closed=False)
     recorder.parameter("height", "Height", 0.5, 2, unit="cm", base_value=45)
+    recorder.parameter("depth", "Depth", 0.25, 2)
     box = recorder.box(1, 1, 1)
     top, right, left = box.top, box.sides[1], box.sides[3]
     recorder.extrude([right, mirrored("x", left)], 1, length="height")
     recorder.rotation_extrude(top, recorder.edges_of(top)[0], 20, 1)
     inserted = recorder.insert_vertex(edge(0), (edge(1), True), lambda1=0.3)
-    recorder.drag(right, 0.1)
+    recorder.drag(right, 0.1, length="depth")
     recorder.scale(right, 0.5, "uv", pivot=top)
     recorder.rotate(right, 30)
     recorder.mark_sharp(top, vertex(0))
@@ -44,6 +56,11 @@ def every_operation() -> dict[str, Any]:
     recorder.remove(inserted[0])
     corners = recorder.vertices_of(box.bottom)
     recorder.connect(corners[0], corners[2])
+    recorder.choice("kind", "Kind", ("one", "two"))
+    recorder.switch("lid", "Lid", active_when=[when("kind", 1, 2), when("height", 1, 2)])
+    recorder.limit("depth", minimum=("height", 0, 0.5), maximum=("height", 1, 1))
+    recorder.part("lid", [recorder.box(0.5, 0.5, 0.1)], [when("lid", 1)])
+    recorder.symmetry(mirrors="xy", axis="z", order=2, apart=[Element("component", 0)])
     document: dict[str, Any] = json.loads(recorder.build().to_json())
     return document
 
@@ -85,7 +102,7 @@ def changed_documents(draw: st.DrawFn) -> Any:
     elif isinstance(holder, list):
         holder.append(copy.deepcopy(holder[path[-1]]) if action == "again" else draw(json_values))
     else:
-        holder[draw(st.sampled_from(["frame", "image", "surprise", "unit", "sharp"]))] = draw(json_values)
+        holder[draw(st.sampled_from(["frame", "image", "surprise", "unit", "sharp", "options", "limits"]))] = draw(json_values)
     return document
 
 
