@@ -89,10 +89,10 @@ def show_model(
     console = stdout()
     console.print(f"[bold]{loaded.name}[/] · class {loaded.class_name} · {len(loaded.operations)} operations")
     if loaded.description:
-        console.print(loaded.description)
+        console.print(loaded.description, markup=False)
     console.print(model_table(loaded))
     for part in loaded.parts:
-        console.print(f"part {part.name}: only if {conditions_text(part.present_when, loaded)}")
+        console.print(f"part {part.name}: only if {conditions_text(part.present_when, loaded)}", markup=False)
     console.print(f"symmetry {symmetry_text(loaded.symmetry)}")
     console.print(f"digest {loaded.digest}")
 
@@ -178,10 +178,12 @@ def _validate(request: tuple[str, int, int]) -> dict[str, Any]:
 
 def _print_validation(result: dict[str, Any]) -> None:
     if "error" in result:
-        typer.echo(f"shapewright: {result['file']}: {result['error']}", err=True)
+        place = result["where"] or result["file"]  # a place begins with the file, as far as there is one
+        typer.echo(f"shapewright: {place}: {result['error']}", err=True)
         return
     checks = " ".join(check if good else check.upper() + "!" for check, good in result["checks"].items())
-    verdict = "valid" if result["valid"] else f"{len(result['findings'])} findings"
+    count = len(result["findings"])
+    verdict = "valid" if result["valid"] else f"{count} finding{'s' if count > 1 else ''}"
     counts = f"{result['parameters']} parameters, {result['variations']} variations"
     typer.echo(f"{result['file']}: {verdict} ({counts}; {checks}; {result['seconds']:.1f} s)")
     for finding in result["findings"]:

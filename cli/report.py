@@ -18,29 +18,30 @@ def parameter_table(parameters: Iterable[Mapping[str, Any]]) -> "Table":
         parameters: mappings with ``label``, ``unit``, ``value`` (x), ``base_value``, ``minimum``, ``maximum``,
             ``option`` and ``active``.
     """
+    from rich.markup import escape
     from rich.table import Table
 
     table = Table("parameter", "measure", "x", "range of x", "in the range")
     for column in table.columns[1:]:
         column.no_wrap = True
     for parameter in parameters:
+        label = escape(parameter["label"])
         if not parameter["active"]:
-            table.add_row(parameter["label"], "inactive", "", "", "", style="dim")
+            table.add_row(label, "inactive", "", "", "", style="dim")
             continue
         value, low, high = parameter["value"], parameter["minimum"], parameter["maximum"]
         if parameter["option"] is not None:
-            table.add_row(parameter["label"], parameter["option"], f"{value:g}", f"{low:g} … {high:g}", "")
+            table.add_row(label, escape(parameter["option"]), f"{value:g}", f"{low:g} … {high:g}", "")
             continue
         base = parameter["base_value"]
-        measure = "" if base is None else f"{value * base:.4g} {parameter['unit'] or ''}".strip()
-        table.add_row(
-            parameter["label"], measure, f"{value:.3f}", f"{low:.3g} … {high:.3g}", position_bar(value, low, high)
-        )
+        measure = "" if base is None else escape(f"{value * base:.4g} {parameter['unit'] or ''}".strip())
+        table.add_row(label, measure, f"{value:.3f}", f"{low:.3g} … {high:.3g}", position_bar(value, low, high))
     return table
 
 
 def model_table(model: "ProceduralModel") -> "Table":
     """Return a table of a model's parameters: name, label, range of x or options, base value, what they depend on."""
+    from rich.markup import escape
     from rich.table import Table
 
     table = Table("parameter", "label", "range of x", "base value", "depends on")
@@ -50,7 +51,8 @@ def model_table(model: "ProceduralModel") -> "Table":
         limits = [f"{limit.bound} {limit.offset:g} + {limit.factor:g} {limit.parameter}" for limit in parameter.limits]
         conditions = [f"only if {conditions_text(parameter.active_when, model)}"] if parameter.active_when else []
         bounds = options or f"{parameter.minimum:g} … {parameter.maximum:g}"
-        table.add_row(parameter.name, parameter.label, bounds, base, "; ".join(conditions + limits))
+        cells = (parameter.name, parameter.label, bounds, base, "; ".join(conditions + limits))
+        table.add_row(*map(escape, cells))
     return table
 
 

@@ -92,6 +92,26 @@ def test_validate_says_what_is_wrong_and_where(lamp: Path, tmp_path: Path) -> No
     told = shapewright("models", "validate", excludes_one)
     assert told.status == 2
     assert len(told.stderr.strip().splitlines()) == 1
+    assert f"shapewright: {excludes_one}: parameters[0]: " in told.stderr
+
+
+def test_texts_of_strangers_are_no_markup(tmp_path: Path) -> None:
+    document = armchair().to_document()
+    document["description"] = document["parameters"][0]["label"] = document["parts"][0]["name"] = "a [/bold] [red]text"
+    document["parameters"][0]["options"][0] = "[/]"
+    path = tmp_path / "strange.json"
+    path.write_text(json.dumps(document))
+    outcome = shapewright("models", "show", path)
+    assert outcome.status == 0
+    assert "part a [/bold] [red]text: only if back is [/]" in outcome.stdout
+
+
+def test_what_refers_to_nothing_is_refused_when_shown(tmp_path: Path) -> None:
+    document = armchair().to_document()
+    document["parts"][0]["present_when"][0]["parameter"] = "nobody"
+    path = tmp_path / "dangling.json"
+    path.write_text(json.dumps(document))
+    assert "parts[0].present_when[0].parameter: there is no" in shapewright("models", "show", path).refused()
 
 
 def test_an_unknown_model_lists_those_that_ship() -> None:
@@ -116,7 +136,7 @@ def test_validate_names_findings_with_the_values_that_show_them(lamp: Path, tmp_
     assert bad["findings"][0]["where"] == "mirror x"
     told = shapewright("models", "validate", lying, "--variations", 5)
     assert told.status == 2
-    assert "1 findings (2 parameters, 5 variations; replay topology SYMMETRY! finite" in told.stdout
+    assert "1 finding (2 parameters, 5 variations; replay topology SYMMETRY! finite" in told.stdout
     assert "symmetry: mirror x: component c0 is off by" in told.stderr
 
 
