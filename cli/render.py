@@ -11,7 +11,7 @@ from cli.console import AsJson, print_json
 from cli.picture import save_picture
 from cli.sources import load_compiled, read_assignments
 from models_store.library.shipped import list_shipped
-from shapewright.errors import RenderingError
+from shapewright.errors import ParameterError, RenderingError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -76,6 +76,8 @@ def render(
     """
     if output.suffix.lower() != ".png":
         raise RenderingError("pictures are written as .png", where=str(output))
+    if not (math.isfinite(turn) and math.isfinite(tilt)):
+        raise RenderingError("an angle is not finite", where="--turn, --tilt")
     from shapewright.rendering import render_mesh, three_quarter_view
 
     view = three_quarter_view(up.value, azimuth_rad=math.radians(turn), elevation_rad=math.radians(tilt))
@@ -100,6 +102,8 @@ def _mesh(source: str, assignments: list[str] | None) -> "TriangleMesh":
     from shapewright.mesh_file import load_mesh
 
     if not _is_model(source):
+        if assignments:
+            raise ParameterError("only a model has parameters", where=f"--set {assignments[0]}")
         return load_mesh(source, in_child=True)
     compiled = load_compiled(source)
     return compiled.instance(compiled.values_from_mapping(read_assignments(compiled.model, assignments, None)))

@@ -1,5 +1,6 @@
 """A sheet of small pictures of one model: the base, each parameter at its ends, random variations."""
 
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
@@ -115,7 +116,9 @@ def _measure(parameter: Parameter, x: float) -> str:
     if options:
         return options[x]
     shown = f"x = {x:.3g}"
-    return shown if parameter.base_value is None else f"{shown}: {x * parameter.base_value:.3g} {parameter.unit or ''}"
+    if parameter.base_value is None:
+        return shown
+    return f"{shown}: {x * parameter.base_value:.3g} {parameter.unit or ''}".strip()
 
 
 def _check_size(counts: Sequence[int], size: int, columns: int) -> None:
@@ -148,9 +151,9 @@ def _composed(sections: Sequence[tuple[str, Sequence[Cell]]], size: int, columns
 
 
 def _fitted(text: str, width: float, draw: "ImageDraw", font: "FreeTypeFont | ImageFont") -> str:
-    """Cut a text so that it fits, with an ellipsis."""
-    if draw.textlength(text, font) <= width:
-        return text
-    while text and draw.textlength(text + "…", font) > width:
-        text = text[:-1]
-    return text + "…"
+    """Put a text on one line and cut it so that it fits, with an ellipsis."""
+    line = " ".join(text.split())
+    if draw.textlength(line, font) <= width:
+        return line
+    kept = bisect_left(range(len(line)), True, key=lambda end: draw.textlength(line[:end] + "…", font) > width)
+    return line[: max(kept - 1, 0)] + "…"

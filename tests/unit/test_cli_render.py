@@ -40,6 +40,9 @@ def test_refusals(lamp: Path, tmp_path: Path) -> None:
     empty = tmp_path / "empty.off"
     empty.write_bytes(b"")
     assert "empty" in shapewright("render", empty, "-o", tmp_path / "a.png").refused()
+    assert "finite" in shapewright("render", lamp, "-o", tmp_path / "a.png", "--turn", "nan").refused()
+    refused = shapewright("render", empty, "-o", tmp_path / "a.png", "--set", "post_length=2").refused()
+    assert "only a model has parameters" in refused
     assert not (tmp_path / "a.png").exists()
 
 

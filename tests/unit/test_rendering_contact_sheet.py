@@ -1,5 +1,7 @@
 """Contact sheets show the base, every parameter where it acts, and random variations."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from chair_model import armchair
@@ -65,3 +67,12 @@ def test_the_same_generator_gives_the_same_sheet() -> None:
 def test_a_sheet_that_is_too_large_is_refused_before_it_is_drawn() -> None:
     with pytest.raises(RenderingError, match="16384"):
         compose_contact_sheet(rod().compile(), variations=1000, size=500)
+
+
+def test_texts_of_strangers_fit_on_their_line() -> None:
+    model = rod()
+    plain = sheet_of(model.compile(), variations=0)
+    for label in ("Le\nng\r\nth", "Length " * 28, "\t\u200b", "W" * 200):
+        (length,) = model.parameters
+        sheet = sheet_of(replace(model, parameters=(replace(length, label=label),)).compile(), variations=0)
+        assert sheet.shape == plain.shape
