@@ -4,6 +4,7 @@ import threading
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,11 +40,16 @@ class _BoundStep:
     operation: Operation
     bindings: tuple[tuple[int, str], ...]
 
+    @cached_property
+    def _of_one(self) -> Quantities:
+        """The quantities without parameters, for the instance that a slider asks for: no copies are needed."""
+        return self._constant(1)
+
+    def _constant(self, count: int) -> Quantities:
+        return {name: np.full(count, float(getattr(self.operation, name))) for name in self.operation.quantities}
+
     def quantities(self, values: Values) -> Quantities:
-        count = len(values)
-        amounts: Quantities = {
-            name: np.full(count, float(getattr(self.operation, name))) for name in self.operation.quantities
-        }
+        amounts = self._of_one if len(values) == 1 else self._constant(len(values))
         for column, mode in self.bindings:
             amounts = self.operation.modes[mode](amounts, values[:, column])
         return amounts
@@ -175,7 +181,7 @@ class CompiledModel:
         """
         values = self._settled(values)
         points = np.empty((len(values), self.surface_polygons(steps).n_vertices, 3))
-        for start, chunk in self.surface_chunks(values, steps):
+        for start, chunk in self._surface_chunks(values, steps):
             points[start : start + len(chunk)] = chunk
         return points
 
@@ -188,7 +194,9 @@ class CompiledModel:
             ParameterError: the array has not P columns or holds NaN.
             ModelError: ``steps`` is out of range.
         """
-        values = self._settled(values)
+        return self._surface_chunks(self._settled(values), steps)
+
+    def _surface_chunks(self, values: Values, steps: int) -> Iterator[tuple[int, Float[np.ndarray, "C V 3"]]]:
         n_vertices = self.surface_polygons(steps).n_vertices
         for rows in self._batches(len(values), max(24 * n_vertices, self._row_bytes)):
             controls = self._control_rows(values[rows])
@@ -238,7 +246,7 @@ class CompiledModel:
         values = self._settled(values)
         triangles = self.surface_triangles(steps)
         present = self._present(values)
-        for start, chunk in self.surface_chunks(values, steps):
+        for start, chunk in self._surface_chunks(values, steps):
             for row, points in enumerate(chunk, start):
                 if present[row].all():
                     yield TriangleMesh(points, triangles)
@@ -272,10 +280,7 @@ class CompiledModel:
         return positions[self._live]
 
     def _present(self, settled: Values) -> Bool[np.ndarray, "B N"]:
-        present = np.ones((len(settled), len(self.model.parts)), dtype=bool)
-        for number, part in enumerate(self.model.parts):
-            present[:, number] = self.space.holds(part.present_when, settled)
-        return present
+        return self.space.holds_each([part.present_when for part in self.model.parts], settled)
 
     def _settled(self, values: Float[np.ndarray, "B P"]) -> Values:
         if values.ndim != 2 or values.shape[1] != self.n_parameters:

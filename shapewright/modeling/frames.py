@@ -4,7 +4,8 @@ PAPER-NOTES, section 3: the frame of a face has its normal as z, its first edge 
 v = z x u. A vertex or an edge takes the mean normal of the faces around it and u from its first edge.
 
 Positions inside the kernel are ``(V, 3, B)``: the batch lies innermost, so that every sum runs over contiguous
-numbers, gathering vertices copies whole rows, and a subdivision step is one product with a sparse matrix.
+numbers, gathering vertices copies whole rows, and a subdivision step is one product with a sparse matrix. Rows are
+gathered with ``take``, which begins sooner than indexing does: a single instance is mostly many small steps.
 """
 
 from dataclasses import dataclass
@@ -44,6 +45,9 @@ class TargetFrames:
     """The frames of the T targets of one operation, evaluated together.
 
     Targets with an image take the image of the first target's frame (left-handed for a mirror).
+
+    Attributes:
+        along_axes: whether all of them are axes of the model, or mirrored ones.
     """
 
     def __init__(
@@ -53,6 +57,10 @@ class TargetFrames:
         self._n_targets = len(sources)
         self._imaged = [i for i, image in enumerate(images) if image is not None]
         self._matrices = np.array([image for image in images if image is not None]).reshape(-1, 3, 3)
+        self._fixed: Float[np.ndarray, "T 3 3"] | None = None
+        if all(isinstance(s, WorldFrame) or (i > 0 and images[i] is not None) for i, s in enumerate(sources)):
+            self._fixed = np.array([np.eye(3) if image is None else image for image in images])
+        self.along_axes = self._fixed is not None and bool((np.abs(self._fixed) == np.eye(3)).all())
         own = [(i, s) for i, s in enumerate(sources) if isinstance(s, FrameSource) and images[i] is None]
         self._own = [i for i, _ in own]
         loops = [loop for _, source in own for loop in source.loops]
@@ -69,6 +77,8 @@ class TargetFrames:
         Where an instance has no normal (a collapsed face) z falls back to the world's z, and u to any direction
         across it, so that frames are always orthonormal and finite.
         """
+        if self._fixed is not None:
+            return np.broadcast_to(self._fixed[..., None], (*self._fixed.shape, positions.shape[2]))
         frames = np.zeros((self._n_targets, 3, 3, positions.shape[2]))
         frames[:, (0, 1, 2), (0, 1, 2)] = 1.0
         if self._own:
@@ -78,8 +88,9 @@ class TargetFrames:
         return frames
 
     def _own_frames(self, positions: Positions) -> Frames:
-        centres = positions[self._centres]
-        spokes, following = positions[self._corners] - centres, positions[self._following] - centres
+        centres = positions.take(self._centres, axis=0)
+        spokes = positions.take(self._corners, axis=0) - centres
+        following = positions.take(self._following, axis=0) - centres
         normals = np.add.reduceat(cross(spokes, following), self._loop_starts, axis=0)
         extents = np.maximum.reduceat(_dot(spokes, spokes), self._loop_starts, axis=0)
         # Relative to the face's size, so that a model may be as small as it likes; a collapsed face has no say.
@@ -87,7 +98,7 @@ class TargetFrames:
         if len(self._source_starts) < len(self._loop_starts):
             normals = np.add.reduceat(normals, self._source_starts, axis=0)
         normal = _unit(normals, np.array([0.0, 0.0, 1.0]), _TINY)
-        along = positions[self._first_edges[:, 1]] - positions[self._first_edges[:, 0]]
+        along = positions.take(self._first_edges[:, 1], axis=0) - positions.take(self._first_edges[:, 0], axis=0)
         u = along - _dot(along, normal) * normal
         square, floor = _dot(u, u), _TINY * np.maximum(_dot(along, along), _TINY * _TINY)
         if (square <= floor).any():
@@ -150,7 +161,7 @@ class Centres:
 
     def evaluate(self, positions: Positions) -> Vectors:
         """Return the means, (T, 3, B)."""
-        return np.add.reduceat(positions[self._vertices], self._starts, axis=0) / self._counts
+        return np.add.reduceat(positions.take(self._vertices, axis=0), self._starts, axis=0) / self._counts
 
 
 def cross(first: Vectors, second: Vectors) -> Vectors:

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from shapewright.errors import ModelError, ParameterError
-from shapewright.modeling.dependence import Condition
+from shapewright.modeling.dependence import Condition, Limit
 from shapewright.modeling.fields import shown
 from shapewright.modeling.parameter import Parameter
 
@@ -93,7 +93,7 @@ class ParameterSpace:
     def active(self, values: Values) -> Bool[np.ndarray, "B P"]:
         """Tell which parameters are active in settled rows."""
         active = np.ones(values.shape, dtype=bool)
-        for i, *_, column in self._bounds(values):
+        for i, column in self._activity(values).items():
             active[:, i] = column
         return active
 
@@ -104,10 +104,13 @@ class ParameterSpace:
             lowest[:, i], highest[:, i] = low, high
         return lowest, highest
 
-    def holds(self, conditions: Sequence[Condition], values: Values) -> Bool[np.ndarray, " B"]:
-        """Tell in which settled rows all conditions hold; one on a parameter that is not active does not."""
-        active = self.active(values)
-        return self._hold(conditions, values, {i: active[:, i] for i in range(len(self.parameters))})
+    def holds_each(self, each: Sequence[Sequence[Condition]], values: Values) -> Bool[np.ndarray, "B N"]:
+        """Tell in which settled rows all conditions of each list hold; one on an inactive parameter does not."""
+        activity = self._activity(values)
+        held = np.empty((len(values), len(each)), dtype=bool)
+        for number, conditions in enumerate(each):
+            held[:, number] = self._hold(conditions, values, activity)
+        return held
 
     def values_from_mapping(self, named: Mapping[str, float]) -> Float[np.ndarray, " P"]:
         """Return one settled row from names; what is not named is 1, or as near as its range allows.
@@ -162,7 +165,15 @@ class ParameterSpace:
                     low = np.maximum(low, bound)
                 else:
                     high = np.minimum(high, bound)
+            if parameter.limits:
+                low = np.minimum(low, high)  # rounding, where they meet
             yield i, low, high, activity[i]
+
+    def _activity(self, values: Values) -> dict[int, Bool[np.ndarray, " B"]]:
+        activity: dict[int, Bool[np.ndarray, " B"]] = {}
+        for i, parameter in enumerate(self.parameters):
+            activity[i] = self._hold(parameter.active_when, values, activity)
+        return activity
 
     def _hold(
         self, conditions: Sequence[Condition], values: Values, activity: Mapping[int, Bool[np.ndarray, " B"]]
@@ -177,19 +188,25 @@ class ParameterSpace:
     def _check(self, i: int) -> None:
         parameter = self.parameters[i]
         self.check_conditions(parameter.active_when, f"parameters[{i}].active_when", before=i)
-        lowest, highest = parameter.minimum, parameter.maximum  # in the worst case
+        lows = [Limit("minimum", parameter.name, parameter.minimum, 0.0)]
+        highs = [Limit("maximum", parameter.name, parameter.maximum, 0.0)]
         for j, limit in enumerate(parameter.limits):
             where = f"parameters[{i}].limits[{j}]"
             column = self.columns.get(limit.parameter)
             if column is None or column >= i:
                 raise ModelError(f"there is no parameter {shown(limit.parameter)} before this one", where=where)
-            ends = [limit.offset + limit.factor * x for x in (self.minimum[column], self.maximum[column])]
             base = limit.offset + limit.factor
-            if limit.bound == "minimum":
-                lowest, shut_out = max(lowest, *ends), base > 1.0 + _SLACK
-            else:
-                highest, shut_out = min(highest, *ends), base < 1.0 - _SLACK
-            if shut_out:
+            if (base > 1.0 + _SLACK) if limit.bound == "minimum" else (base < 1.0 - _SLACK):
                 raise ModelError(f"the limit shuts out 1, the base model, where {limit.parameter!r} is 1", where=where)
-            if lowest > highest:
+            (lows if limit.bound == "minimum" else highs).append(limit)
+            if min(self._least_room(low, high) for low in lows for high in highs) < -_SLACK:
                 raise ModelError(f"the limit leaves no value where {limit.parameter!r} is at an end", where=where)
+
+    def _least_room(self, low: Limit, high: Limit) -> float:
+        """Smallest space between two bounds, wherever the values are that they follow."""
+        terms = [(high.parameter, high.factor), (low.parameter, -low.factor)]
+        if low.parameter == high.parameter:
+            terms = [(low.parameter, high.factor - low.factor)]
+        columns = [(self.columns[name], factor) for name, factor in terms]
+        least = (min(factor * self.minimum[i], factor * self.maximum[i]) for i, factor in columns)
+        return float(high.offset - low.offset + sum(least))

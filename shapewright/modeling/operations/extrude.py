@@ -50,7 +50,9 @@ class _Extruded:
 
     def move(self, positions: Positions, quantities: Quantities) -> None:
         ways = displacement(self.frames.evaluate(positions), quantities)
-        positions[self.new] = positions[self.old] + (ways if len(ways) == 1 else ways[self.targets])
+        positions[self.new] = positions.take(self.old, axis=0) + (
+            ways if len(ways) == 1 else ways.take(self.targets, axis=0)
+        )
 
 
 def check_each_once(targets: tuple[Target, ...]) -> None:

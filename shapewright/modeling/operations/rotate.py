@@ -45,6 +45,8 @@ class _Rotated:
     axis: int
 
     def move(self, positions: Positions, quantities: Quantities) -> None:
+        if (quantities["alpha_deg"] == 0.0).all():
+            return
         angle_rad = np.radians(quantities["alpha_deg"])
         first, second = (self.axis + 1) % 3, (self.axis + 2) % 3
         turn = np.zeros((3, 3, positions.shape[2]))

@@ -11,7 +11,7 @@ from shapewright.modeling.elements import Element, Target
 from shapewright.modeling.fields import NUMBER, OPTIONAL_ELEMENT, TARGETS, choice, field
 from shapewright.modeling.frames import Positions
 from shapewright.modeling.operations.operation import Mode, Operation, Quantities, Step, multiplies
-from shapewright.modeling.operations.selection import MovedTargets, map_about_pivots, moved_targets
+from shapewright.modeling.operations.selection import MovedTargets, moved_targets, stretch_about_pivots
 
 LOCAL_AXES = {"uvz": (0, 1, 2), "uv": (0, 1), "uz": (0, 2), "vz": (1, 2), "u": (0,), "v": (1,), "z": (2,)}
 
@@ -47,7 +47,8 @@ class _Scaled:
     axes: tuple[int, ...]
 
     def move(self, positions: Positions, quantities: Quantities) -> None:
-        stretch = np.zeros((3, 3, positions.shape[2]))
-        for axis in range(3):
-            stretch[axis, axis] = quantities["sigma"] if axis in self.axes else 1.0
-        map_about_pivots(positions, self.targets, stretch)
+        if (quantities["sigma"] == 1.0).all():  # many proportions are inserted at 1 and stay there
+            return
+        factors = np.ones((3, positions.shape[2]))
+        factors[list(self.axes)] = quantities["sigma"]
+        stretch_about_pivots(positions, self.targets, factors)

@@ -91,8 +91,26 @@ def map_about_pivots(positions: Positions, targets: MovedTargets, local_map: Flo
     pivots = targets.pivots.evaluate(positions)
     for run in targets.runs:
         if len(maps) == 1:  # the common case needs no copy of the map for each vertex
-            positions[run.vertices] = pivots + np.einsum("ijb,njb->nib", maps[0], positions[run.vertices] - pivots)
+            positions[run.vertices] = pivots + np.einsum(
+                "ijb,njb->nib", maps[0], positions.take(run.vertices, axis=0) - pivots
+            )
         else:
-            pivot = pivots[run.targets]
-            offsets = positions[run.vertices] - pivot
-            positions[run.vertices] = pivot + np.einsum("nijb,njb->nib", maps[run.targets], offsets)
+            pivot = pivots.take(run.targets, axis=0)
+            offsets = positions.take(run.vertices, axis=0) - pivot
+            positions[run.vertices] = pivot + np.einsum("nijb,njb->nib", maps.take(run.targets, axis=0), offsets)
+
+
+def stretch_about_pivots(positions: Positions, targets: MovedTargets, factors: Float[np.ndarray, "3 B"]) -> None:
+    """Multiply local coordinates by factors, as :func:`map_about_pivots` does with a diagonal map."""
+    if not targets.frames.along_axes:
+        stretch = np.zeros((3, 3, positions.shape[2]))
+        stretch[(0, 1, 2), (0, 1, 2)] = factors
+        map_about_pivots(positions, targets, stretch)
+        return
+    pivots = targets.pivots.evaluate(positions)
+    for run in targets.runs:
+        pivot = pivots if len(pivots) == 1 else pivots.take(run.targets, axis=0)
+        offsets = positions.take(run.vertices, axis=0) - pivot
+        offsets *= factors
+        offsets += pivot
+        positions[run.vertices] = offsets
