@@ -1,10 +1,11 @@
 """A dataset: a folder of labelled meshes.
 
 ``labels.csv`` has the columns ``file`` and ``class``, others are ignored. Files are looked up below the folder, or
-below its folder ``meshes``.
+below its folder ``meshes``; a path that leads out of it is refused.
 """
 
 import csv
+import reprlib
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -16,9 +17,6 @@ from shapewright.mesh import TriangleMesh
 from shapewright.mesh_file import load_mesh
 
 LABELS: Final = "labels.csv"
-OTHER: Final = "other"
-"""The label of meshes that belong to no class of the library."""
-
 _BLOCK: Final = 8
 
 
@@ -43,7 +41,8 @@ def read_dataset(folder: str | Path) -> tuple[LabelledFile, ...]:
     """Read the labels of a folder, in their order.
 
     Raises:
-        EvaluationError: no ``labels.csv``, a column is missing, or no row.
+        EvaluationError: no ``labels.csv``, a column is missing, no row, or a row without a class or a file below the
+            folder.
     """
     root = Path(folder)
     source = root / LABELS
@@ -53,17 +52,21 @@ def read_dataset(folder: str | Path) -> tuple[LabelledFile, ...]:
             missing = {"file", "class"} - set(reader.fieldnames or ())
             if missing:
                 raise EvaluationError(f"the column {sorted(missing)[0]!r} is missing", where=str(source))
-            rows = [(str(row["file"] or "").strip(), str(row["class"] or "").strip()) for row in reader]
+            rows = [
+                (reader.line_num, str(row["file"] or "").strip(), str(row["class"] or "").strip()) for row in reader
+            ]
     except (UnicodeDecodeError, csv.Error) as error:
         raise EvaluationError(f"no table of comma-separated values: {error}", where=str(source)) from None
     except OSError as error:
         raise EvaluationError(f"a dataset is a folder with {LABELS}: {error.strerror}", where=str(source)) from None
     if not rows:
         raise EvaluationError("the dataset has no meshes", where=str(source))
-    for number, (name, class_name) in enumerate(rows, start=2):
+    for line, name, class_name in rows:
         if not name or not class_name:
-            raise EvaluationError("a row needs a file and a class", where=f"{source}: row {number}")
-    return tuple(LabelledFile(name, class_name, _located(root, name)) for name, class_name in rows)
+            raise EvaluationError("a row needs a file and a class", where=f"{source}: line {line}")
+        if Path(name).is_absolute() or ".." in Path(name).parts or "\0" in name:
+            raise EvaluationError(f"{reprlib.repr(name)} is no path below the folder", where=f"{source}: line {line}")
+    return tuple(LabelledFile(name, class_name, _located(root, name)) for _, name, class_name in rows)
 
 
 def of_classes(items: Iterable[LabelledFile], class_names: Iterable[str]) -> tuple[LabelledFile, ...]:
@@ -108,6 +111,8 @@ def _load(item: LabelledFile) -> TriangleMesh | Skipped:
 
 
 def _located(root: Path, name: str) -> Path:
-    direct = root / name
-    below = root / "meshes" / name
-    return below if not direct.exists() and below.exists() else direct
+    direct, below = root / name, root / "meshes" / name
+    try:
+        return below if not direct.exists() and below.exists() else direct
+    except OSError:  # a name too long for the file system; whoever opens it is told
+        return direct

@@ -44,7 +44,13 @@ def test_unreadable_meshes_are_told_and_the_others_read(tmp_path: Path) -> None:
         (None, "a folder with labels.csv"),
         (b"file,label\na.off,fish\n", "the column 'class' is missing"),
         (b"file,class\n", "no meshes"),
-        (b"file,class\na.off,\n", "row 2"),
+        (b"", "the column 'class' is missing"),
+        (b"file,class\n\na.off,\n", "line 3"),
+        (b"file,class\na.off\n", "line 2"),
+        (b"file,class\n../a.off,fish\n", "line 2: '../a.off' is no path below"),
+        (b"file,class\nmeshes/../../a.off,fish\n", "no path below"),
+        (b"file,class\n/etc/a.off,fish\n", "no path below"),
+        (b"file,class\na\0b.off,fish\n", "no path below"),
         (b"file,class\n\xff\xfe,x\n", "comma-separated"),
     ],
 )
@@ -53,6 +59,13 @@ def test_what_is_no_dataset_is_refused(tmp_path: Path, content: bytes | None, me
         (tmp_path / "labels.csv").write_bytes(content)
     with pytest.raises(EvaluationError, match=message):
         read_dataset(tmp_path)
+
+
+def test_a_name_that_no_file_system_takes_is_skipped(tmp_path: Path) -> None:
+    (tmp_path / "labels.csv").write_text(f"file,class\n{'a' * 3000}.off,fish\n")
+    ((_, mesh),) = load_each(read_dataset(tmp_path))
+    assert isinstance(mesh, Skipped)
+    assert "too long" in mesh.reason
 
 
 @given(labels, st.integers(1, 50))
