@@ -67,7 +67,8 @@ class DescriptorCache:
             self._folder.mkdir(parents=True, exist_ok=True)
             for ending in ("npz", "json"):  # not *: another process may be writing beside its target
                 for old in self._folder.glob(f"{request.family}*.{ending}"):
-                    old.unlink(missing_ok=True)
+                    if old != path:  # another process may have built the same bank, and be about to map it
+                        old.unlink(missing_ok=True)
             built.save(path)
             del built
             bank = PanoramaBank.load(path)

@@ -11,6 +11,7 @@ from small_dataset import bent_rod, rod, slab, write_dataset
 
 from shapewright.distances.panorama import panorama_descriptor, panorama_distance
 from shapewright.errors import Cancelled, EvaluationError
+from shapewright.estimation.bank import PanoramaBank
 from shapewright.evaluation import descriptor_cache
 from shapewright.evaluation.coverage import Coverage, measure_coverage
 from shapewright.evaluation.datasets import LabelledFile, of_classes, read_dataset
@@ -140,6 +141,23 @@ def test_a_bank_that_the_program_would_not_make_any_more_is_made_anew(tmp_path: 
     np.testing.assert_array_equal(new.values, old[::-1])
 
 
+def test_a_bank_that_another_process_maps_is_replaced_in_one_step(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cache = DescriptorCache(tmp_path)
+    cache.bank(BankRequest(SLAB, 8, 0))
+    save = PanoramaBank.save
+    there = []
+
+    def watched(self: PanoramaBank, path: Path) -> None:
+        there.append(path.exists())
+        save(self, path)
+
+    monkeypatch.setattr(PanoramaBank, "save", watched)
+    cache.bank(BankRequest(MovedModel(SLAB.model), 8, 0))
+    assert there == [True]
+
+
 def test_damaged_files_of_the_cache_are_made_anew(items: tuple[LabelledFile, ...], cache: Path) -> None:
     first = measured(items, cache)
     for path in cache.iterdir():
@@ -195,9 +213,9 @@ class PageReader(html.parser.HTMLParser):
 def test_the_report_holds_its_pictures_and_escapes_names(items: tuple[LabelledFile, ...], cache: Path) -> None:
     found = measured(items, cache)
     reader = PageReader()
-    reader.feed(coverage_report(found, coverage_of_classes(found), title="<b>mine</b>", worst=2))
+    reader.feed(coverage_report(found, coverage_of_classes(found), title="<b>mine</b> & more", worst=2))
     assert len(reader.addresses) == 2 * 2 * 2
     assert all(address.startswith("data:image/png;base64,") for address in reader.addresses)
-    assert "Coverage of <b>mine</b>" in reader.text
+    assert reader.text.count("Coverage of <b>mine</b> & more") == 2
     assert "broken.off" in reader.text
     assert "rod_bent 2×" in reader.text
