@@ -1,11 +1,12 @@
 """`shapewright evaluate`: how well models, classifier and estimator do on labelled meshes."""
 
 import time
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cli.console import AsJson, flowing, print_json, shown_progress, stderr, stdout
+from cli.console import AsJson, flowing, print_json, shown_progress, stdout
 from cli.evaluation_options import (
     CacheFolder,
     Classes,
@@ -84,6 +85,8 @@ def coverage(
     from shapewright.evaluation.metrics import coverage_of_classes
 
     started_s = time.monotonic()
+    if report is not None and report.is_dir():
+        raise EvaluationError("a file is needed, this is a folder", where=f"--report {report}")
     items = read_dataset(dataset)
     labels = {item.class_name for item in items}
     queried, compared = _chosen_classes(labels, names_in(classes), names_in(against))
@@ -104,27 +107,22 @@ def coverage(
             from shapewright.evaluation.report import coverage_report
 
             last = PartialProgress(progress, 0.95, 1.0)
-            page = coverage_report(measured, summed, title=dataset.name, worst=worst, jobs=used, progress=last)
+            page = coverage_report(
+                measured, summed, title=dataset.resolve().name, worst=worst, jobs=used, progress=last
+            )
             report.parent.mkdir(parents=True, exist_ok=True)
             write_whole(report, page.encode())
-    left_out = len(items) - len(of_classes(items, queried))
     if as_json:
-        print_json(
-            {
-                "dataset": str(dataset),
-                "samples": samples,
-                "seed": seed,
-                "n": len(measured.queries),
-                "per_class": {name: figures.to_dict() for name, figures in summed.items()},
-                "matrix": {name: figures.medians for name, figures in summed.items()},
-                "meshes": _meshes(measured),
-                "skipped_count": len(measured.skipped),
-                "skipped": [{"file": skipped.file, "reason": skipped.reason} for skipped in measured.skipped],
-                "other_classes_count": left_out,
-                "report": None if report is None else str(report),
-                "seconds": round(time.monotonic() - started_s, 3),
-            }
-        )
+        document = {
+            "dataset": str(dataset),
+            "samples": samples,
+            "seed": seed,
+            **_document(measured, summed),
+            "other_classes_count": len(items) - len(of_classes(items, queried)),
+            "report": None if report is None else str(report),
+            "seconds": round(time.monotonic() - started_s, 3),
+        }
+        print_json(document)
         return
     _print(measured, summed)
     if report is not None:
@@ -146,10 +144,24 @@ def _chosen_classes(
                     f"no model of class {name!r} ships (of these: {', '.join(by_class)})", where=option
                 )
     queried = [name for name in by_class if name in labels and (classes is None or name in classes)]
+    if not queried and classes is not None:
+        named = ", ".join(classes) or "nothing is named"
+        raise EvaluationError(f"no mesh of the dataset has one of these classes: {named}", where="--classes")
     if not queried:
         raise EvaluationError("no mesh of the dataset has the class of a shipped model", where="--dataset")
     rivals = [name for name in by_class if name in (labels if against is None else against)]
     return queried, {name: by_class[name] for name in by_class if name in queried or name in rivals}
+
+
+def _document(measured: "Coverage", summed: "dict[str, ClassCoverage]") -> dict[str, Any]:
+    return {
+        "n": len(measured.queries),
+        "per_class": {name: figures.to_dict() for name, figures in summed.items()},
+        "matrix": {name: figures.medians for name, figures in summed.items()},
+        "meshes": _meshes(measured),
+        "skipped_count": len(measured.skipped),
+        "skipped": [asdict(skipped) for skipped in measured.skipped],
+    }
 
 
 def _meshes(measured: "Coverage") -> list[dict[str, Any]]:
@@ -196,6 +208,7 @@ def _print(measured: "Coverage", summed: "dict[str, ClassCoverage]") -> None:
     if behind:
         stdout().print(f"Another class is nearer (!): {', '.join(behind)}.")
     for skipped in measured.skipped:
-        stderr().print(f"skipped {skipped.file}: {skipped.reason}", markup=False)
+        typer.echo(f"skipped {skipped.file}: {skipped.reason}", err=True)
     if measured.skipped:
-        stderr().print(f"{len(measured.skipped)} meshes were skipped")
+        count = len(measured.skipped)
+        typer.echo("1 mesh was skipped" if count == 1 else f"{count} meshes were skipped", err=True)

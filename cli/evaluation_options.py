@@ -24,7 +24,9 @@ Classes = Annotated[
 Seed = Annotated[int, typer.Option(min=0, help="Seed of all random choices.")]
 Jobs = Annotated[
     int | None,
-    typer.Option(min=1, help="Threads and processes (default: as many as there are cores).", show_default=False),
+    typer.Option(
+        min=1, max=256, help="Threads and processes (default: as many as there are cores).", show_default=False
+    ),
 ]
 CacheFolder = Annotated[
     Path | None,

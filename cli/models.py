@@ -105,7 +105,7 @@ def validate_models(
     every: Annotated[bool, typer.Option("--all", help="Check every model that ships.")] = False,
     variations: Annotated[int, typer.Option(min=0, help="Random variations of each model.")] = 1000,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the variations.")] = 0,
-    jobs: Annotated[int, typer.Option(min=1, help="Models that are checked at once.")] = 1,
+    jobs: Annotated[int, typer.Option(min=1, max=256, help="Models that are checked at once.")] = 1,
     as_json: AsJson = False,
 ) -> None:
     """Check procedural models: the document, replay, topology, symmetry, random variations, effect of parameters.

@@ -73,7 +73,10 @@ def test_classes_rivals_and_a_limit_narrow_it(common: tuple[str | Path, ...]) ->
 def test_refusals(common: tuple[str | Path, ...], tmp_path: Path) -> None:
     assert "labels.csv" in shapewright("evaluate", "coverage", "--dataset", tmp_path).refused()
     assert "'teapot'" in shapewright(*common, "--classes", "teapot").refused()
-    assert "no mesh of the dataset" in shapewright(*common, "--classes", "fish").refused()
+    assert "--classes: no mesh of the dataset" in shapewright(*common, "--classes", "fish").refused()
+    assert "--classes: no mesh of the dataset" in shapewright(*common, "--classes", ",").refused()
+    assert "a file is needed" in shapewright(*common, "--report", tmp_path).refused()
+    assert "--jobs" in shapewright(*common, "--jobs", "100000").refused()
 
 
 def test_the_group_teaches() -> None:
