@@ -80,8 +80,6 @@ class CompiledModel:
             except ModelError as error:
                 raise ModelError(error.message, where=f"operations[{index}]") from None
             most_work = max(most_work, mesh.work - work_before)
-        for number, part in enumerate(model.parts):
-            self.space.check_conditions(part.present_when, f"parts[{number}].present_when")
         self._parts = PartVertices(mesh, model.parts)
         for component in model.symmetry.apart:
             if component.id >= mesh.n_components:

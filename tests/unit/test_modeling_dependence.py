@@ -160,6 +160,9 @@ def test_documents_of_version_1_are_read() -> None:
         (("parameters", 4, "limits", 1), {"bound": "maximum", "parameter": "width", "offset": -2.0, "factor": 3.5},
          "parameters[4].limits[1]", "leaves no value"),
         (("parameters", 0, "options"), ["one", "two"], "parameters[0]", "one whole number for each"),
+        (("parameters", 0, "options"), ["one", "two", "one"], "parameters[0]", "two options of one name"),
+        (("parameters", 4, "active_when", 0, "range"), [2, 1], "parameters[4].active_when[0].range", "empty"),
+        (("parts", 0, "present_when", 0, "range"), [2, 1], "parts[0].present_when[0].range", "empty"),
         (("parts", 0, "present_when"), [], "parts[0]", "no condition"),
         (("parts", 0, "present_when", 0, "parameter"), "nobody", "parts[0].present_when[0]", "no parameter"),
         (("parts", 0, "components"), ["c9"], "parts[0].components", "does not exist"),
@@ -182,6 +185,40 @@ def test_a_wrong_dependence_is_refused_with_its_place(
         ProceduralModel.from_document(document).compile()
     assert refused.value.where is not None
     assert refused.value.where.startswith(where)
+
+
+@pytest.mark.parametrize("path", [("parameters", 4, "active_when", 0), ("parts", 0, "present_when", 0)])
+def test_a_reference_to_nothing_is_refused_before_anything_is_built(path: tuple[str | int, ...]) -> None:
+    document = json.loads(chair_recorder().build().to_json())
+    item = document
+    for step in path:
+        item = item[step]
+    item["parameter"] = "nobody"
+    with pytest.raises(ModelError, match="no parameter 'nobody'"):
+        ProceduralModel.from_document(document)
+
+
+def corridor(room: float) -> Recorder:
+    """A parameter that must lie a little above another one, at most ``room`` above it."""
+    recorder = Recorder("corridor", "corridor")
+    recorder.parameter("inner", "Inner radius", 0.5, 2.0)
+    recorder.parameter("outer", "Outer radius", 0.4, 2.5)
+    recorder.limit("outer", minimum=("inner", 0.0, 1.0), maximum=("inner", room, 1.0))
+    inside = recorder.box(1.0, 1.0, 1.0)
+    recorder.scale(inside.whole, 1.0, size="inner")
+    recorder.scale(recorder.box(1.0, 1.0, 1.1).whole, 1.0, size="outer")
+    return recorder
+
+
+def test_two_limits_by_one_parameter_may_leave_a_narrow_range_everywhere() -> None:
+    values = corridor(0.2).build().compile().random_values(np.random.default_rng(0), 200)
+    above = values[:, 1] - values[:, 0]
+    assert above.min() >= -1e-12
+    assert above.max() <= 0.2 + 1e-12
+    crossed = corridor(0.2)
+    crossed.limit("outer", minimum=("inner", -0.5, 1.5))
+    with pytest.raises(ModelError, match="leaves no value"):
+        crossed.build()
 
 
 def test_a_part_that_is_connected_to_the_rest_is_refused() -> None:
