@@ -1,9 +1,12 @@
 """How quickly the API is there, how much memory it takes, and how fast a slider moves.
 
 Run ``.venv/bin/python benchmarks/startup.py``; one JSON document goes to stdout. Every figure of a start comes from
-fresh processes; memory is the resident size that the operating system tells.
+fresh processes; memory is the resident size that the operating system tells. ``--only sliders`` leaves the rest out:
+how long it takes over REST from the parameters of one instance to its GLB file, for the model with the largest surface
+and for the slowest one.
 """
 
+import argparse
 import json
 import os
 import statistics
@@ -78,8 +81,8 @@ def documents() -> dict[str, str]:
     return {"box": recorder.build().to_json()}
 
 
-def api_process() -> dict[str, Any]:
-    """Figures of a whole API process that answers over HTTP."""
+def api_process(ask: Callable[[Any], dict[str, Any]]) -> dict[str, Any]:
+    """Figures of a whole API process that answers what ``ask`` asks over HTTP."""
     import socket
 
     import httpx
@@ -107,7 +110,7 @@ def api_process() -> dict[str, Any]:
                             raise
                 figures: dict[str, Any] = {"seconds_to_first_answer": perf_counter() - start}
                 figures["resident_mb_after_start"] = resident_mb(process.pid)
-                figures |= requests(client)
+                figures |= ask(client)
                 figures["resident_mb_after_requests"] = resident_mb(process.pid)
                 return figures
         finally:
@@ -115,21 +118,42 @@ def api_process() -> dict[str, Any]:
             process.wait(30)
 
 
-def requests(client: Any) -> dict[str, Any]:
-    """What a person at the dashboard does: models, a mesh, sliders."""
+def sliders(client: Any, repeats: int = 100) -> dict[str, Any]:
+    """From the parameters of an instance to its GLB file, for every model; each request asks for another variation."""
     headers = {"Content-Type": "application/json"}
-    instances: dict[str, Any] = {}
+    models: dict[str, Any] = {}
     for name, document in documents().items():
         model = client.post("/v1/models", content=document, headers=headers).raise_for_status().json()
         url = f"/v1/models/{model['id']}/instances"
         content = client.post(url, json={}).raise_for_status().content
-        slid = milliseconds(lambda seed, url=url: client.post(url, json={"seed": seed}).raise_for_status(), 100)
-        instances[name] = {
+
+        def slide(seed: int, url: str = url) -> None:
+            client.post(url, json={"seed": seed}).raise_for_status()
+
+        models[name] = {
             "operations": model["operation_count"],
             "parameters": len(model["parameters"]),
+            "surface_vertices": vertex_count(content),
             "glb_bytes": len(content),
-            "milliseconds": slid,
+            "milliseconds": milliseconds(slide, repeats),
         }
+    largest = max(models, key=lambda name: models[name]["surface_vertices"])
+    slowest = max(models, key=lambda name: models[name]["milliseconds"]["median"])
+    named = {"largest": {"model": largest, **models[largest]}, "slowest": {"model": slowest, **models[slowest]}}
+    return {"sliders": named, "instance_post_to_glb": models}
+
+
+def vertex_count(glb: bytes) -> int:
+    """Vertices of the first mesh of a GLB file."""
+    length = int.from_bytes(glb[12:16], "little")
+    document = json.loads(glb[20 : 20 + length])
+    position = document["meshes"][0]["primitives"][0]["attributes"]["POSITION"]
+    return int(document["accessors"][position]["count"])
+
+
+def requests(client: Any) -> dict[str, Any]:
+    """What a person at the dashboard does: models, a mesh, sliders."""
+    instances = sliders(client)
 
     def upload(index: int) -> None:
         off = f"OFF\n4 4 6\n0 0 0\n{index + 1} 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
@@ -137,7 +161,7 @@ def requests(client: Any) -> dict[str, Any]:
 
     listing = milliseconds(lambda _: client.get("/v1/models").raise_for_status(), 100)
     return {
-        "instance_post_to_glb": instances,
+        **instances,
         "small_mesh_upload_milliseconds": milliseconds(upload, 5),
         "model_list_milliseconds": listing,
     }
@@ -145,12 +169,17 @@ def requests(client: Any) -> dict[str, Any]:
 
 def main() -> None:
     """Print all figures."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", choices=["sliders"], help="measure this alone")
+    if parser.parse_args().only:
+        print(json.dumps(api_process(sliders)["sliders"], indent=2))
+        return
     with tempfile.TemporaryDirectory() as folder:
         figures = {
             "seconds_import_shapewright": fresh(IMPORT.format(module="shapewright")),
             "seconds_import_torch_for_comparison": fresh(IMPORT.format(module="torch")),
             "seconds_create_app_to_ready": fresh(READY, folder),
-            "api_process": api_process(),
+            "api_process": api_process(requests),
         }
     print(json.dumps(figures, indent=2))
 
