@@ -53,6 +53,7 @@ class Finding:
         return f"{self.check}: {self.where}: {self.message}" if self.where else f"{self.check}: {self.message}"
 
 
+@np.errstate(over="ignore", invalid="ignore")  # what overflows is a finding
 def validate_model(
     model: ProceduralModel,
     *,
@@ -71,6 +72,7 @@ def validate_model(
     """
     try:
         compiled = model.compile()
+        compiled.surface_polygons()  # may be too large
     except ModelError as error:
         return [Finding(model.name, "topology", error.where or "", error.message, {})]
     rows = compiled.random_values(np.random.default_rng(0) if rng is None else rng, variations)
@@ -192,9 +194,12 @@ def _effect(compiled: CompiledModel, rows: Float[np.ndarray, "B P"]) -> float:
     present = compiled.parts_present(rows)
     if not (present == present[0]).all():
         return 1.0
-    points = compiled.surface_points(rows)[:, _kept(compiled, present[0])]
-    moved = np.linalg.norm(points - points[0], axis=2).max()
-    return float(moved / (_diagonal(points[0]) or 1.0))
+    kept = _kept(compiled, present[0])
+    first = compiled.surface_points(rows[:1])[0, kept]
+    moved = max(
+        float(np.linalg.norm(chunk[:, kept] - first, axis=2).max()) for _, chunk in compiled.surface_chunks(rows)
+    )
+    return moved / (_diagonal(first) or 1.0)
 
 
 def _kept(compiled: CompiledModel, present: Bool[np.ndarray, " N"]) -> Bool[np.ndarray, " V"]:

@@ -16,6 +16,8 @@ from shapewright.progress import NULL_PROGRESS, Progress
 
 VARIATION_CHECKS: Final = ("finite", "faces", "volume", "together", "extent")
 
+GREATEST: Final = 1e100
+"""Largest coordinate; volumes of larger ones overflow."""
 LEAST_AREA: Final = 1e-12
 """Smallest area of a triangle, in squared diagonals of its instance."""
 DIAGONALS: Final = (0.05, 20.0)
@@ -26,6 +28,8 @@ WIDEST_GAP: Final = 0.005
 """Space that may be between the bounding boxes of a component and the rest, in diagonals."""
 
 _CHUNK_TRIANGLES: Final = 150_000
+_PAIRS: Final = 500_000
+"""Pairs of components whose distances are in memory at once."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +109,7 @@ def check_variations(
 
     for start, chunk in _chunks(compiled, values, len(surface.triangles)):
         progress.report(start / len(values), f"variations: {start} of {len(values)}")
-        finite = np.isfinite(chunk).all(axis=(1, 2))
+        finite = (np.abs(chunk) <= GREATEST).all(axis=(1, 2))
         tally("finite", "", start + np.flatnonzero(~finite), np.zeros(int((~finite).sum())))
         rows = start + np.flatnonzero(finite)
         if len(rows) == 0:
@@ -186,24 +190,52 @@ def _gaps(
     ordered = xyz[:, :, surface.vertex_order]
     low = np.minimum.reduceat(ordered, surface.first_vertex, axis=2)
     high = np.maximum.reduceat(ordered, surface.first_vertex, axis=2)
-    apart = np.maximum(low[..., :, None] - high[..., None, :], 0.0)
-    distance = np.linalg.norm(apart + apart.swapaxes(2, 3), axis=0)
     for row, mine in enumerate(there):
         chosen = np.flatnonzero(mine)
-        away = distance[row][np.ix_(chosen, chosen)]
-        count, group = connected_components(sparse.csr_array(away <= WIDEST_GAP * diagonals[row]), directed=False)
-        if count > 1:
-            largest = np.bincount(group).argmax()
-            other = np.where(group[:, None] == group, np.inf, away).min(axis=1)
-            gaps[row, chosen] = np.where(group == largest, 0.0, other)
+        boxes = _Boxes(low[:, row, chosen], high[:, row, chosen])
+        group = boxes.groups(WIDEST_GAP * diagonals[row])
+        largest = np.bincount(group).argmax()
+        for floating in np.flatnonzero(group != largest):
+            others = np.flatnonzero(group != group[floating])
+            gaps[row, chosen[floating]] = boxes.distances(np.array([floating]), others).min()
     return gaps
+
+
+@dataclass(frozen=True)
+class _Boxes:
+    """Bounding boxes; all pairs of them at once may be too many for the memory."""
+
+    low: Float[np.ndarray, "3 K"]
+    high: Float[np.ndarray, "3 K"]
+
+    def distances(self, some: Int[np.ndarray, " S"], others: Int[np.ndarray, " O"]) -> Float[np.ndarray, "S O"]:
+        """Space between boxes; 0 if they touch."""
+        low, high = self.low[:, some, None], self.high[:, some, None]
+        apart = np.maximum(low - self.high[:, None, others], self.low[:, None, others] - high)
+        return np.asarray(np.linalg.norm(np.maximum(apart, 0.0), axis=0))
+
+    def groups(self, reach: float) -> Int[np.ndarray, " K"]:
+        """Number the boxes so that those equal that are connected by steps of at most ``reach``."""
+        group = np.full(self.low.shape[1], -1)
+        at_once = max(1, _PAIRS // len(group))
+        for number in range(len(group)):
+            alone = np.flatnonzero(group < 0)
+            if len(alone) == 0:
+                break
+            waiting = alone[:1]
+            group[waiting] = number
+            while len(waiting) and len(alone := np.flatnonzero(group < 0)):
+                found = alone[(self.distances(waiting[:at_once], alone) <= reach).any(axis=0)]
+                group[found] = number
+                waiting = np.concatenate([waiting[at_once:], found])
+        return group
 
 
 def _message(check: str, where: str, tally: _Tally, total: int) -> str:
     place = f"variation {tally.row - 1}" if tally.row else "the base model"
     many = f"{tally.count} of {total} variations"
     if check == "finite":
-        return f"{many} have coordinates that are not finite, such as {place}"
+        return f"{many} have coordinates that are not finite or beyond {GREATEST:g}, such as {place}"
     if check == "faces":
         return f"{many} have a face without area; worst is {place} ({tally.worst:.1g} of the squared diagonal)"
     if check == "volume":

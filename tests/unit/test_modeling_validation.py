@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from shapewright.modeling import CompiledModel, ProceduralModel, Recorder, group, when
+from shapewright.modeling import CompiledModel, ProceduralModel, Recorder, group, variation_checks, when
 from shapewright.modeling.contexts import active_row, distinct_values
 from shapewright.modeling.validation import (
     CHECKS,
@@ -239,6 +239,33 @@ def test_a_component_that_floats_is_found() -> None:
     findings = validate_model(recorder.build(), variations=60)
     assert {finding.check for finding in findings} == {"together"}
     assert findings[0].values["lift"] > 1.5
+
+
+def test_floating_clusters_are_told_by_component_however_few_pairs_fit_into_memory(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    recorder = Recorder("clusters", "box")
+    for x in (0.0, 0.9, 1.8, 2.7, 5.0, 5.9, 9.0):
+        recorder.box(1.0, 1.0, 1.0, offset=(x, 0.0, 0.0))
+    compiled = recorder.build().compile()
+    found = check_variations(compiled, np.ones((1, 0)))
+    assert [(fault.check, fault.where) for fault in found] == [
+        ("together", "component c4"), ("together", "component c5"), ("together", "component c6")
+    ]  # fmt: skip
+    monkeypatch.setattr(variation_checks, "_PAIRS", 1)
+    assert check_variations(compiled, np.ones((1, 0))) == found
+
+
+def test_a_model_too_large_to_be_subdivided_is_a_finding(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("shapewright.modeling.compiled.MAX_SURFACE_VERTICES", 20)
+    assert "more than 20 vertices" in found(post().build())["topology"][0]
+
+
+@pytest.mark.parametrize("times", [28, 60], ids=["large", "endless"])
+def test_coordinates_without_bound_are_a_finding_and_no_warning(times: int) -> None:
+    base, scale = stretched(0.5, 2.0, size=1e6).operations
+    model = replace(stretched(0.5, 2.0), operations=(base, *[scale] * times))
+    assert list(found(model, variations=2)) == ["finite"]
 
 
 @pytest.mark.parametrize(
