@@ -1,7 +1,7 @@
 """`shapewright models`: the procedural models that ship, and files of your own."""
 
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated, Any
@@ -13,9 +13,13 @@ from cli.report import conditions_text, model_table, symmetry_text
 from cli.sources import load_model
 from models_store.library.shipped import list_shipped, load_shipped
 from shapewright.errors import ShapewrightError
+from shapewright.progress import NULL_PROGRESS, PartialProgress, Progress
 
 if TYPE_CHECKING:
     from shapewright.modeling import Parameter, ProceduralModel
+
+_Request = tuple[str, int, int]
+"""A file or name, how many variations, their seed."""
 
 app = typer.Typer(rich_markup_mode="rich")
 
@@ -122,9 +126,8 @@ def validate_models(
         raise typer.BadParameter("name models, or take --all", param_hint="FILES")
     chosen = [(file, variations, seed) for file in (list_shipped() if every else files or [])]
     results = []
-    with shown_progress("validating") as progress, _mapping(min(jobs, len(chosen))) as mapped:
-        for number, result in enumerate(mapped(_validate, chosen), start=1):
-            progress.report(number / len(chosen), result["file"])
+    with shown_progress("validating") as progress, _validating(chosen, min(jobs, len(chosen)), progress) as validated:
+        for result in validated:
             results.append(result)
             if not as_json:
                 _print_validation(result)
@@ -135,19 +138,26 @@ def validate_models(
 
 
 @contextmanager
-def _mapping(jobs: int) -> Iterator[Callable[..., Iterable[dict[str, Any]]]]:
-    """Yield ``map``, or one over processes."""
+def _validating(requests: Sequence[_Request], jobs: int, progress: Progress) -> Iterator[Iterator[dict[str, Any]]]:
+    """Yield the results, one after another or by processes."""
+    count = len(requests)
     if jobs == 1:
-        yield map
+        parts = (PartialProgress(progress, number / count, (number + 1) / count) for number in range(count))
+        yield map(_validate, requests, parts)
         return
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
 
+    def told(results: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+        for number, result in enumerate(results, start=1):
+            progress.report(number / count, result["file"])
+            yield result
+
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        yield pool.map
+        yield told(pool.map(_validate, requests))
 
 
-def _validate(request: tuple[str, int, int]) -> dict[str, Any]:
+def _validate(request: _Request, progress: Progress = NULL_PROGRESS) -> dict[str, Any]:
     import numpy as np
 
     from shapewright.modeling.validation import CHECKS, validate_model
@@ -158,7 +168,8 @@ def _validate(request: tuple[str, int, int]) -> dict[str, Any]:
         loaded = load_model(file)
         shipped = list_shipped().get(file)
         text = None if shipped is None else shipped.read_text(encoding="utf-8")
-        findings = validate_model(loaded, variations=variations, rng=np.random.default_rng(seed), document=text)
+        rng = np.random.default_rng(seed)
+        findings = validate_model(loaded, variations=variations, rng=rng, document=text, progress=progress)
     except ShapewrightError as error:
         return {"file": file, "valid": False, "error": error.message, "where": error.where, "findings": []}
     failed = {finding.check for finding in findings}
