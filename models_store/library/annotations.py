@@ -94,9 +94,10 @@ class Annotation:
         if self.model != model.name:
             raise ModelError(f"the annotation is of {self.model!r}, not of {model.name!r}")
         expected = variations_of(model.operations)
+        known = set(expected)
         judged = [judgement.variation for judgement in self.judgements]
         for variation in judged:
-            if variation not in expected:
+            if variation not in known:
                 raise ModelError(f"operation {variation.operation} has no {variation.mode!r} to judge")
         if judged != expected:
             raise ModelError("the judgements are not one for each variation, in order")
@@ -105,7 +106,7 @@ class Annotation:
             members = set(group.members)
             if len(members) < 2 or len(members) < len(group.members):
                 raise ModelError(f"the group {group.label!r} needs at least two members, each once")
-            if not members <= set(expected):
+            if not members <= known:
                 raise ModelError(f"the group {group.label!r} has a member that is not judged")
             if len({(model.operations[m.operation].kind, m.mode) for m in members}) > 1:
                 raise ModelError(f"the members of {group.label!r} are of different kinds")
@@ -134,7 +135,7 @@ class Annotation:
                 annotator=str(document["annotator"]),
                 notes=str(document["notes"]),
             )
-        except (ValueError, KeyError, TypeError) as error:
+        except (ValueError, KeyError, TypeError, RecursionError) as error:
             raise ModelError(f"not an annotation: {error!r}") from None
 
     def to_json(self) -> str:

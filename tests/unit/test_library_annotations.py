@@ -165,3 +165,6 @@ def test_a_document_that_is_no_annotation_is_refused(change: dict[str, object]) 
         Annotation.from_json(json.dumps(document))
     with pytest.raises(ModelError):
         Annotation.from_json("{")
+    for text in (b"\xff", "[" * 100_000, "[]", "null", '{"format": "shapewright-annotations", "version": 1}'):
+        with pytest.raises(ModelError, match="not an annotation"):
+            Annotation.from_json(text)
