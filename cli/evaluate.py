@@ -19,7 +19,8 @@ from cli.evaluation_options import (
     names_in,
     threads,
 )
-from cli.sources import load_all_compiled, shipped_by_class
+from cli.sources import load_all_compiled
+from models_store.library.shipped import list_classes
 from shapewright.errors import EvaluationError
 from shapewright.progress import PartialProgress
 from shapewright.whole_file import write_whole
@@ -136,7 +137,7 @@ def _chosen_classes(
     labels: set[str], classes: list[str] | None, against: list[str] | None
 ) -> tuple[list[str], dict[str, list[str]]]:
     """Return the classes whose meshes are taken, and the shipped models of each class that is compared."""
-    by_class = shipped_by_class()
+    by_class = list_classes()
     for option, chosen in (("--classes", classes), ("--against", against)):
         for name in chosen or []:
             if name not in by_class:

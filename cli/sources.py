@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from models_store.library.shipped import list_shipped, load_shipped
+from models_store.library.shipped import list_classes, list_shipped, load_shipped
 from shapewright.errors import ModelError, ParameterError
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def load_class(class_name: str) -> "list[CompiledModel]":
     Raises:
         ModelError: no model of the class ships.
     """
-    classes = shipped_by_class()
+    classes = list_classes()
     if class_name not in classes:
         raise ModelError(f"no such class ships (these do: {', '.join(classes) or 'none'})", where=repr(class_name))
     return [load_compiled(name) for name in classes[class_name]]
@@ -61,20 +61,12 @@ def load_class(class_name: str) -> "list[CompiledModel]":
 
 def load_classes(sources: list[str] | None) -> "dict[str, list[CompiledModel]]":
     """Load models by class: of every class named, and each model or file named; every shipped one when none is."""
-    classes = shipped_by_class()
+    classes = list_classes()
     named = sources or list(classes)
     names = [name for source in named for name in classes.get(source, [source])]
     by_class: dict[str, list[CompiledModel]] = {}
     for compiled in load_all_compiled(list(dict.fromkeys(names))):
         by_class.setdefault(compiled.model.class_name, []).append(compiled)
-    return by_class
-
-
-def shipped_by_class() -> dict[str, list[str]]:
-    """Return the names of the shipped models by class; their documents are read, not checked."""
-    by_class: dict[str, list[str]] = {}
-    for name, document in list_shipped().items():
-        by_class.setdefault(str(json.loads(document.read_bytes())["class"]), []).append(name)
     return by_class
 
 

@@ -1,5 +1,6 @@
 """Finds the procedural models that ship. Reads package files only; loading a document imports the modelling kernel."""
 
+import json
 from importlib import resources
 from importlib.resources.abc import Traversable
 from typing import TYPE_CHECKING
@@ -17,6 +18,14 @@ def list_shipped() -> dict[str, Traversable]:
     """Return the documents of the shipped models, by name, sorted by name."""
     found = {folder.name: folder / DOCUMENT for folder in _folder().iterdir() if folder.is_dir()}
     return {name: document for name, document in sorted(found.items()) if document.is_file()}
+
+
+def list_classes() -> dict[str, list[str]]:
+    """Return the names of the shipped models of each class, sorted; their documents are read, not checked."""
+    by_class: dict[str, list[str]] = {}
+    for name, document in list_shipped().items():
+        by_class.setdefault(str(json.loads(document.read_bytes())["class"]), []).append(name)
+    return by_class
 
 
 def load_shipped(name: str) -> "ProceduralModel":

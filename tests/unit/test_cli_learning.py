@@ -8,7 +8,8 @@ import pytest
 from command_line import shapewright, write_lamp_model
 from PIL import Image
 
-from cli.sources import load_class, load_classes, shipped_by_class
+from cli.sources import load_class, load_classes
+from models_store.library.shipped import list_classes
 from shapewright.mesh_file import load_mesh
 from shapewright.modeling import Recorder
 
@@ -98,7 +99,7 @@ def test_of_several_models_the_best_one_is_found(folder: Path, tmp_path: Path) -
 
 
 def test_a_class_is_all_of_its_models() -> None:
-    shipped = shipped_by_class()
+    shipped = list_classes()
     assert list(load_classes(None)) == list(shipped)
     assert [one.model.name for one in load_class("table")] == shipped["table"]
     both = load_classes(["table", "sword_katana"])
