@@ -84,8 +84,12 @@ class CompiledModel:
         for component in model.symmetry.apart:
             if component.id >= mesh.n_components:
                 raise ModelError(f"component {component} does not exist", where="symmetry.apart")
-        self._steps = tuple(steps)
+        fixed, self._steps = _split(steps)
         self._n_created = mesh.n_vertices
+        self._start = np.zeros((self._n_created, 3, 1))
+        """What every instance begins with: the outcome of the steps that no parameter has a say in."""
+        for bound in fixed:
+            bound.step.move(self._start, bound.quantities(self.base_values()[None]))
         self._row_bytes = 24 * max(mesh.n_vertices, most_work)  # of one instance, while a step is at work
         self._live = np.array(mesh.live_vertices(), dtype=np.int64)
         self._control = _compact(mesh, self._live)
@@ -270,7 +274,7 @@ class CompiledModel:
         return (slice(start, start + size) for start in range(0, count, size))
 
     def _control_rows(self, values: Values) -> Positions:
-        positions = np.zeros((self._n_created, 3, len(values)))
+        positions = np.repeat(self._start, len(values), axis=2)
         for bound in self._steps:
             bound.step.move(positions, bound.quantities(values))
         if self.model.parts:
@@ -286,6 +290,26 @@ class CompiledModel:
         if not np.isfinite(values).all():
             raise ParameterError("a value is not finite")
         return self.space.settle(values)
+
+
+def _split(steps: list[_BoundStep]) -> tuple[tuple[_BoundStep, ...], tuple[_BoundStep, ...]]:
+    """Tell steps that are the same for every instance, and can be done before the others, from the others.
+
+    Such a step has no parameter, reads nothing that one of the others before it wrote, and writes nothing that one of
+    them wrote or read.
+    """
+    fixed, varying = [], []
+    read: set[int] = set()
+    written: set[int] = set()
+    for bound in steps:
+        reads, writes = bound.step.reads(), bound.step.writes()
+        if not bound.bindings and written.isdisjoint(reads | writes) and read.isdisjoint(writes):
+            fixed.append(bound)
+        else:
+            varying.append(bound)
+            read |= reads
+            written |= writes
+    return tuple(fixed), tuple(varying)
 
 
 def _compact(mesh: ControlMesh, live: Int[np.ndarray, " V"]) -> Polygons:

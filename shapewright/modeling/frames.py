@@ -20,6 +20,7 @@ Positions = Float[np.ndarray, "V 3 B"]
 Vectors = Float[np.ndarray, "T 3 B"]
 Frames = Float[np.ndarray, "T 3 3 B"]
 
+_NOTHING, _UP = np.zeros(3), np.array([0.0, 0.0, 1.0])
 _TINY = 1e-12
 _FLAT = 1e-9
 
@@ -47,6 +48,7 @@ class TargetFrames:
     Targets with an image take the image of the first target's frame (left-handed for a mirror).
 
     Attributes:
+        count: T.
         along_axes: whether all of them are axes of the model, or mirrored ones.
     """
 
@@ -54,7 +56,7 @@ class TargetFrames:
         self, sources: list[FrameSource | WorldFrame], images: list[Float[np.ndarray, "3 3"] | None] | None = None
     ) -> None:
         images = images or [None] * len(sources)
-        self._n_targets = len(sources)
+        self.count = len(sources)
         self._imaged = [i for i, image in enumerate(images) if image is not None]
         self._matrices = np.array([image for image in images if image is not None]).reshape(-1, 3, 3)
         self._fixed: Float[np.ndarray, "T 3 3"] | None = None
@@ -79,13 +81,18 @@ class TargetFrames:
         """
         if self._fixed is not None:
             return np.broadcast_to(self._fixed[..., None], (*self._fixed.shape, positions.shape[2]))
-        frames = np.zeros((self._n_targets, 3, 3, positions.shape[2]))
+        frames = np.zeros((self.count, 3, 3, positions.shape[2]))
         frames[:, (0, 1, 2), (0, 1, 2)] = 1.0
         if self._own:
             frames[self._own] = self._own_frames(positions)
         if self._imaged:
             frames[self._imaged] = np.einsum("tij,jkb->tikb", self._matrices, frames[0])
         return frames
+
+    def vertices(self) -> set[int]:
+        """Return the vertices that the frames are taken from."""
+        looked_at = (self._corners, self._following, self._centres, self._first_edges)
+        return {int(v) for vertices in looked_at for v in vertices.flat}
 
     def _own_frames(self, positions: Positions) -> Frames:
         centres = positions.take(self._centres, axis=0)
@@ -94,10 +101,11 @@ class TargetFrames:
         normals = np.add.reduceat(cross(spokes, following), self._loop_starts, axis=0)
         extents = np.maximum.reduceat(_dot(spokes, spokes), self._loop_starts, axis=0)
         # Relative to the face's size, so that a model may be as small as it likes; a collapsed face has no say.
-        normals = _unit(normals, np.zeros(3), np.maximum(_FLAT * extents, _TINY * _TINY))
+        smallest: Float[np.ndarray, "T 1 B"] | float = np.maximum(_FLAT * extents, _TINY * _TINY)
         if len(self._source_starts) < len(self._loop_starts):
-            normals = np.add.reduceat(normals, self._source_starts, axis=0)
-        normal = _unit(normals, np.array([0.0, 0.0, 1.0]), _TINY)
+            normals = np.add.reduceat(_unit(normals, _NOTHING, smallest), self._source_starts, axis=0)
+            smallest = _TINY
+        normal = _unit(normals, _UP, smallest)
         along = positions.take(self._first_edges[:, 1], axis=0) - positions.take(self._first_edges[:, 0], axis=0)
         u = along - _dot(along, normal) * normal
         square, floor = _dot(u, u), _TINY * np.maximum(_dot(along, along), _TINY * _TINY)
@@ -158,6 +166,10 @@ class Centres:
         self._vertices = np.array([v for vertices in lists for v in vertices], dtype=np.int64)
         self._starts = _starts([len(vertices) for vertices in lists])
         self._counts = np.array([len(vertices) for vertices in lists], dtype=np.float64)[:, None, None]
+
+    def vertices(self) -> set[int]:
+        """Return the vertices of all lists."""
+        return set(self._vertices.tolist())
 
     def evaluate(self, positions: Positions) -> Vectors:
         """Return the means, (T, 3, B)."""

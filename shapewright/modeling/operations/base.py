@@ -93,6 +93,12 @@ class _PlaceBase:
     placed: tuple[int, ...]
     centres: Centres
 
+    def reads(self) -> set[int]:
+        return self.frames.vertices() | self.centres.vertices()
+
+    def writes(self) -> set[int]:
+        return set(range(self.first_vertex, self.first_vertex + self.frames.count * len(self.points)))
+
     def move(self, positions: Positions, quantities: Quantities) -> None:
         copies = np.einsum("tijb,nj->tnib", self.frames.evaluate(positions), self.points)
         if self.placed:

@@ -50,5 +50,6 @@ def displacement(frames: Frames, quantities: Quantities) -> Vectors:
     """Return rho cos(phi) u + rho sin(phi) v + z n in model space, one vector for each target and instance."""
     angle_rad = np.radians(quantities["phi_deg"])
     rho = quantities["rho"]
-    local = np.stack([rho * np.cos(angle_rad), rho * np.sin(angle_rad), quantities["z"]])
+    local = np.empty((3, len(rho)))
+    local[0], local[1], local[2] = rho * np.cos(angle_rad), rho * np.sin(angle_rad), quantities["z"]
     return np.einsum("tijb,jb->tib", frames, local)

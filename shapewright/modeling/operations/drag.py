@@ -25,6 +25,12 @@ class Drag(Displacement):
 class _Dragged:
     targets: MovedTargets
 
+    def reads(self) -> set[int]:
+        return self.targets.reads()
+
+    def writes(self) -> set[int]:
+        return self.targets.writes()
+
     def move(self, positions: Positions, quantities: Quantities) -> None:
         ways = displacement(self.targets.frames.evaluate(positions), quantities)
         for run in self.targets.runs:

@@ -48,6 +48,12 @@ class _Extruded:
     new: Int[np.ndarray, " N"]
     targets: Int[np.ndarray, " N"]
 
+    def reads(self) -> set[int]:
+        return self.frames.vertices() | set(self.old.tolist())
+
+    def writes(self) -> set[int]:
+        return set(self.new.tolist())
+
     def move(self, positions: Positions, quantities: Quantities) -> None:
         ways = displacement(self.frames.evaluate(positions), quantities)
         positions[self.new] = positions.take(self.old, axis=0) + (

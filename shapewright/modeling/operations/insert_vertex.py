@@ -59,6 +59,12 @@ class InsertVertex(Operation):
 class _Inserted:
     runs: tuple[Int[np.ndarray, "3 N"], ...]
 
+    def reads(self) -> set[int]:
+        return {int(v) for _, start, end in self.runs for v in (*start, *end)}
+
+    def writes(self) -> set[int]:
+        return {int(v) for middle, _, _ in self.runs for v in middle}
+
     def move(self, positions: Positions, quantities: Quantities) -> None:
         share = quantities["lambda1"]
         for middle, start, end in self.runs:

@@ -27,9 +27,23 @@ class Step(Protocol):
     def move(self, positions: Positions, quantities: Quantities) -> None:
         """Set or change rows of ``positions`` (V, 3, B) in place."""
 
+    def reads(self) -> set[int]:
+        """Return the rows that it looks at."""
+
+    def writes(self) -> set[int]:
+        """Return the rows that it sets or changes."""
+
 
 class NoMove:
     """The step of an operation that only changes the topology."""
+
+    def reads(self) -> set[int]:
+        """Return no rows."""
+        return set()
+
+    def writes(self) -> set[int]:
+        """Return no rows."""
+        return set()
 
     def move(self, positions: Positions, quantities: Quantities) -> None:
         """Move nothing."""

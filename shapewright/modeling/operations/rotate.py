@@ -44,6 +44,12 @@ class _Rotated:
     targets: MovedTargets
     axis: int
 
+    def reads(self) -> set[int]:
+        return self.targets.reads()
+
+    def writes(self) -> set[int]:
+        return self.targets.writes()
+
     def move(self, positions: Positions, quantities: Quantities) -> None:
         if (quantities["alpha_deg"] == 0.0).all():
             return

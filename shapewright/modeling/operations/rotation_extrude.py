@@ -66,6 +66,12 @@ class _Turned:
     new: Loop
     angle_deg: float
 
+    def reads(self) -> set[int]:
+        return self.frame.vertices() | self.centre.vertices() | set(self.old)
+
+    def writes(self) -> set[int]:
+        return set(self.new)
+
     def move(self, positions: Positions, quantities: Quantities) -> None:
         frame = self.frame.evaluate(positions)[0]
         centre = self.centre.evaluate(positions)

@@ -46,6 +46,12 @@ class _Scaled:
     targets: MovedTargets
     axes: tuple[int, ...]
 
+    def reads(self) -> set[int]:
+        return self.targets.reads()
+
+    def writes(self) -> set[int]:
+        return self.targets.writes()
+
     def move(self, positions: Positions, quantities: Quantities) -> None:
         if (quantities["sigma"] == 1.0).all():  # many proportions are inserted at 1 and stay there
             return

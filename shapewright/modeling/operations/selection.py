@@ -35,6 +35,14 @@ class MovedTargets:
     pivots: Centres
     runs: tuple[Run, ...]
 
+    def reads(self) -> set[int]:
+        """Return the rows that are moved or that say how."""
+        return self.frames.vertices() | self.pivots.vertices() | self.writes()
+
+    def writes(self) -> set[int]:
+        """Return the rows that are moved."""
+        return {int(v) for run in self.runs for v in run.vertices}
+
 
 def moved_targets(mesh: ControlMesh, targets: tuple[Target, ...], pivot: Element | None = None) -> MovedTargets:
     """Bind targets to a topology.
