@@ -102,7 +102,8 @@ def changed_documents(draw: st.DrawFn) -> Any:
     elif isinstance(holder, list):
         holder.append(copy.deepcopy(holder[path[-1]]) if action == "again" else draw(json_values))
     else:
-        holder[draw(st.sampled_from(["frame", "image", "surprise", "unit", "sharp", "options", "limits"]))] = draw(json_values)
+        added = draw(st.sampled_from(["frame", "image", "surprise", "unit", "sharp", "options", "limits"]))
+        holder[added] = draw(json_values)
     return document
 
 
