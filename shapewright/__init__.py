@@ -15,7 +15,7 @@ if TYPE_CHECKING:
         train_classifier,
     )
     from shapewright.errors import Cancelled, ShapewrightError
-    from shapewright.estimation import Estimation, EstimationSettings, estimate
+    from shapewright.estimation import ClassEstimation, Estimation, EstimationSettings, estimate, estimate_class
     from shapewright.mesh import TriangleMesh
     from shapewright.mesh_file import load_mesh, parse_mesh
     from shapewright.modeling import CompiledModel, Parameter, ProceduralModel, Recorder
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "Cancelled": "errors",
     "Classification": "classification",
+    "ClassEstimation": "estimation",
     "Classifier": "classification",
     "CompiledModel": "modeling",
     "Estimation": "estimation",
@@ -36,6 +37,7 @@ _HOMES = {
     "TrainingSettings": "classification",
     "TriangleMesh": "mesh",
     "estimate": "estimation",
+    "estimate_class": "estimation",
     "load_mesh": "mesh_file",
     "parse_mesh": "mesh_file",
     "render_images": "rendering",
@@ -45,6 +47,7 @@ _HOMES = {
 
 __all__ = [
     "Cancelled",
+    "ClassEstimation",
     "Classification",
     "Classifier",
     "CompiledModel",
@@ -58,6 +61,7 @@ __all__ = [
     "TrainingSettings",
     "TriangleMesh",
     "estimate",
+    "estimate_class",
     "load_mesh",
     "parse_mesh",
     "render_images",
