@@ -21,10 +21,10 @@ def _environment() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if not name.startswith("SHAPEWRIGHT_")}
 
 
-@pytest.mark.timeout(300)
+@pytest.mark.timeout(600)
 def test_the_demo_once_on_its_sample(repository: Path, tmp_path: Path) -> None:
     coarse = tmp_path / "coarse.json"
-    coarse.write_text('{"surface_points": 200, "image_size": 64, "step_sizes": [0.5, 0.1]}')
+    coarse.write_text('{"surface_points": 100, "image_size": 32, "step_sizes": [0.5, 0.2]}')
     options = ("--samples", "100", "--settings", coarse, "--output", tmp_path / "out")
     done = subprocess.run(
         [sys.executable, "-m", "cli", "demo", "--once", "--json", *options],
