@@ -13,8 +13,8 @@ import typer
 from cli.console import AsJson, print_json, shown_progress, stderr, stdout
 from cli.report import parameter_table, probability_table
 from cli.sources import read_object
-from models_store.library.shipped import list_shipped
-from shapewright.errors import ShapewrightError
+from models_store.library.shipped import list_classes, list_shipped
+from shapewright.errors import ModelError, ShapewrightError
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -42,6 +42,10 @@ def demo(
             show_default=False,
         ),
     ] = None,
+    classes: Annotated[
+        list[str] | None,
+        typer.Option("--class", help="Learn this class only; repeatable (default: all that ship).", show_default=False),
+    ] = None,
     variations: Annotated[int, typer.Option(min=1, help="Random variations of each class to learn from.")] = 60,
     images: Annotated[int, typer.Option(min=1, help="Images of each variation.")] = 5,
     samples: Annotated[int, typer.Option(min=1, help="Random instances of the estimation's first layer.")] = 1500,
@@ -62,9 +66,11 @@ def demo(
 
       [bold]bash scripts/demo[/]                       the sample, then the dashboard until Ctrl-C
       [bold]bash scripts/demo my-table.off --once[/]   a mesh of yours
+      [bold]bash scripts/demo my-table.off --class table --class chair --class stool[/]   it is one of these
     """
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     console = stderr() if as_json else stdout()
+    names = _models_of(classes)
     query = SAMPLE if mesh is None else mesh
     training = {"variations": variations, "images_per_variation": images, "seed": seed}
     finished = False
@@ -81,7 +87,7 @@ def demo(
             service = stack.enter_context(local_service(folder, port=port, log=output / "service.log"))
             client = stack.enter_context(connected(service["url"], ready_within_s=READY_WITHIN_S))
             console.print(f"   {service['url']}, worker {service['worker_pid']}, log {output / 'service.log'}")
-            report = _walk(client, console, query, output, training, estimating)
+            report = _walk(client, console, names, query, output, training, estimating)
             report["dashboard_url"] = service["dashboard_url"]
             finished = True
             if as_json:
@@ -108,6 +114,15 @@ def _quick_settings(samples: int, seed: int) -> dict[str, Any]:
     return {name: settings[name] for name in names}
 
 
+def _models_of(classes: list[str] | None) -> list[str]:
+    """Return the names of the shipped models of some classes, or all; raises ModelError for one that does not ship."""
+    known = list_classes()
+    for name in classes or ():
+        if name not in known:
+            raise ModelError(f"no such class ships (these do: {', '.join(known)})", where=repr(name))
+    return [model for name in dict.fromkeys(classes or known) for model in known[name]]
+
+
 def _refuse_early(query: Path) -> None:
     """A mesh that the service will refuse is told about before a classifier is trained."""
     from shapewright.mesh_file import load_mesh
@@ -128,6 +143,7 @@ def _step(console: "Console", number: int, text: str) -> None:
 def _walk(
     client: "Client",
     console: "Console",
+    names: list[str],
     query: Path,
     output: Path,
     training: dict[str, int],
@@ -135,7 +151,7 @@ def _walk(
 ) -> dict[str, Any]:
     """Take the steps 2 to 5; return what they found."""
     _step(console, 2, "upload the procedural models")
-    models = _upload_models(client, console)
+    models = _upload_models(client, console, names)
 
     _step(console, 3, "train a classifier with pictures of their variations")
     classifier = _train(client, console, [model["id"] for model in models], training)
@@ -190,10 +206,11 @@ def _walk(
     }
 
 
-def _upload_models(client: "Client", console: "Console") -> list[Any]:
+def _upload_models(client: "Client", console: "Console", names: list[str]) -> list[Any]:
     models, uploaded = [], 0
-    for document in list_shipped().values():
-        model, new = client.post_document("/v1/models", document.read_text(encoding="utf-8"))
+    shipped = list_shipped()
+    for name in names:
+        model, new = client.post_document("/v1/models", shipped[name].read_text(encoding="utf-8"))
         models.append(model)
         uploaded += new
     for class_name in sorted({model["class_name"] for model in models}):

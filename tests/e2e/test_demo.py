@@ -14,18 +14,19 @@ from PIL import Image
 
 from shapewright.mesh_file import load_mesh
 
-SMALL = ("--variations", "12", "--images", "4", "--samples", "30")
+FEW_CLASSES = ("--class", "glass_with_stem", "--class", "sword", "--class", "table")
+SMALL = (*FEW_CLASSES, "--variations", "12", "--images", "4", "--samples", "30")
 
 
 def _environment() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if not name.startswith("SHAPEWRIGHT_")}
 
 
-@pytest.mark.timeout(600)
+@pytest.mark.timeout(300)
 def test_the_demo_once_on_its_sample(repository: Path, tmp_path: Path) -> None:
     coarse = tmp_path / "coarse.json"
     coarse.write_text('{"surface_points": 100, "image_size": 32, "step_sizes": [0.5, 0.2]}')
-    options = ("--samples", "100", "--settings", coarse, "--output", tmp_path / "out")
+    options = (*FEW_CLASSES, "--samples", "100", "--settings", coarse, "--output", tmp_path / "out")
     done = subprocess.run(
         [sys.executable, "-m", "cli", "demo", "--once", "--json", *options],
         capture_output=True,
@@ -93,3 +94,14 @@ def test_a_mesh_that_cannot_be_read_ends_it_with_a_reason(tmp_path: Path) -> Non
     assert done.returncode == 1
     assert "missing.off" in done.stderr
     assert done.stdout == "", "it is noticed before anything is started"
+
+
+def test_a_class_that_does_not_ship_is_refused(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "cli", "demo", "--once", "--class", "teapot"],
+        capture_output=True, text=True, cwd=tmp_path, env=_environment(), check=False,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "teapot" in done.stderr
+    assert "glass_with_stem" in done.stderr
+    assert list(tmp_path.iterdir()) == []
