@@ -64,8 +64,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--batch", type=int, default=1000)
     parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--models", nargs="+", metavar="NAME", default=list(list_shipped()), help="default: all")
     arguments = parser.parse_args()
-    models = {name: measure(name, arguments.batch, arguments.repeats) for name in list_shipped()}
+    models = {name: measure(name, arguments.batch, arguments.repeats) for name in arguments.models}
     peak_mib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     print(json.dumps({"batch": arguments.batch, "models": models, "peak_memory_mib": round(peak_mib)}, indent=2))
 
