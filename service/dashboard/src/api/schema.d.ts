@@ -1421,7 +1421,7 @@ export interface components {
                     ];
                 }
             ];
-            parameters?: {
+            parameters?: ({
                 name: string;
                 label: string;
                 unit?: string | null;
@@ -1446,7 +1446,11 @@ export interface components {
                     offset: number;
                     factor: number;
                 }[];
-            }[];
+            } | {
+                targets?: unknown;
+            } | {
+                options: unknown;
+            })[];
             parts?: {
                 name: string;
                 components: string[];
