@@ -68,7 +68,8 @@ def demo(
       [bold]bash scripts/demo my-table.off --once[/]   a mesh of yours
       [bold]bash scripts/demo my-table.off --class table --class chair --class stool[/]   it is one of these
     """
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    for number in (signal.SIGINT, signal.SIGTERM):  # a shell that starts us in the background has SIGINT ignored
+        signal.signal(number, signal.default_int_handler)
     console = stderr() if as_json else stdout()
     names = _models_of(classes)
     query = SAMPLE if mesh is None else mesh

@@ -86,10 +86,10 @@ def test_the_whole_path_on_postgresql_and_redis(
 
 def _walk(client: Client, folder: Path, library_models: "dict[str, ProceduralModel]") -> None:
     uploaded = {}
-    for model in library_models.values():
+    for model in (library_models[name] for name in ("glass_with_stem", "sword", "table")):
         answer, new = client.post_document("/v1/models", model.to_json())
         assert new
-        uploaded[answer["class_name"]] = answer
+        uploaded[answer["name"]] = answer
         again, new = client.post_document("/v1/models", model.to_json())
         assert (again["id"], new) == (answer["id"], False)
 
@@ -100,7 +100,7 @@ def _walk(client: Client, folder: Path, library_models: "dict[str, ProceduralMod
     assert sorted(classifier["class_names"]) == sorted(uploaded)
     assert client.get_bytes(classifier["onnx_url"])[:1] == b"\x08"  # an ONNX file begins with its version
 
-    mesh, truth = _glass(next(m for m in library_models.values() if m.class_name == "glass_with_stem"))
+    mesh, truth = _glass(library_models["glass_with_stem"])
     file = folder / "query.ply"
     mesh.save(file)
     query = client.upload("/v1/meshes", file)
