@@ -8,7 +8,7 @@ SCALE_RANGE = (0.8, 2.0)
 WINDOW = 2.0
 """Half the side of a picture, in units of the scaled object (whose coordinates lie within ±1 at scale 1)."""
 
-ImageStyle = Literal["edges", "shaded"]
+ImageStyle = Literal["edges", "shaded", "lambert", "depth", "normals", "fused"]
 """``edges``: grey fill with dark silhouettes, creases and steps, what classes are learned in.
 ``shaded``: lit, for people."""
 
@@ -34,6 +34,10 @@ class Style:
 
 STYLES: dict[str, Style] = {
     "edges": Style("edges", oversampling=2),
+    "lambert": Style("lambert", oversampling=2),
+    "depth": Style("depth", oversampling=2),
+    "normals": Style("normals", oversampling=2),
+    "fused": Style("fused", oversampling=2),
     "shaded": Style(
         "shaded",
         oversampling=2,

@@ -67,6 +67,9 @@ float read_lattice(out bool anything) {
     return dot(vec4(greaterThan(inner, uvec4(0u))), vec4(0.25));
 }
 
+// One of the four samples of the pixel.
+uint inner_sample(int i) { return lattice[i < 2 ? 3 + i : 5 + i]; }
+
 // Darkness of lines in this pixel, 0 to 1: an edge through the pixel counts fully, one at its rim a little
 // less, so lines are smooth and nearly two pixels wide.
 float edge_darkness() {
