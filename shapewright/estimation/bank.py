@@ -1,26 +1,22 @@
 """The query-independent half of layer 1: random instances and their panorama descriptors (section 3.3)."""
 
-import io
-import json
-import os
-import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from jaxtyping import Float, Float32
 
 from shapewright.errors import Cancelled, EstimationError
 from shapewright.estimation.generator import InstanceGenerator
+from shapewright.mapped_arrays import read_arrays, read_header, write_arrays
 from shapewright.progress import NULL_PROGRESS, Progress
 
 FORMAT: Final = "shapewright-panorama-bank"
 VERSION: Final = 1
 
 _CHUNK_BYTES: Final = 32 * 2**20
-_ALIGNMENT: Final = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,22 +69,13 @@ class PanoramaBank:
         Raises:
             OSError: the file cannot be written.
         """
-        target = Path(path)
         header = {
             "format": FORMAT,
             "version": VERSION,
             "model_digest": self.model_digest,
             "subdivision_steps": self.subdivision_steps,
         }
-        partial = target.with_name(f"{target.name}.partial{os.getpid()}")
-        try:
-            with zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED, allowZip64=True) as archive:
-                text = np.frombuffer(json.dumps(header).encode(), dtype=np.uint8)
-                for name, array in (("header", text), ("values", self.values), ("descriptors", self.descriptors)):
-                    _write_aligned(archive, f"{name}.npy", array)
-            partial.replace(target)
-        finally:
-            partial.unlink(missing_ok=True)
+        write_arrays(path, header, {"values": self.values, "descriptors": self.descriptors})
 
     @classmethod
     def load(cls, path: str | Path, *, memory_map: bool = True) -> "PanoramaBank":
@@ -100,14 +87,12 @@ class PanoramaBank:
         """
         source = Path(path)
         try:
-            with zipfile.ZipFile(source) as archive:
-                header = json.loads(_read_array(archive, source, "header.npy", memory_map=False).tobytes())
-                if header["format"] != FORMAT or header["version"] != VERSION:
-                    raise EstimationError("this version of the bank's format is unknown", where=source.name)
-                values = _read_array(archive, source, "values.npy", memory_map=memory_map)
-                descriptors = _read_array(archive, source, "descriptors.npy", memory_map=memory_map)
-                return cls(values, descriptors, str(header["model_digest"]), int(header["subdivision_steps"]))
-        except (zipfile.BadZipFile, KeyError, ValueError, TypeError, EOFError) as error:
+            header = read_header(source)
+            if header["format"] != FORMAT or header["version"] != VERSION:
+                raise EstimationError("this version of the bank's format is unknown", where=source.name)
+            values, descriptors = read_arrays(source, ("values", "descriptors"), memory_map=memory_map)
+            return cls(values, descriptors, str(header["model_digest"]), int(header["subdivision_steps"]))
+        except (KeyError, ValueError, TypeError) as error:
             raise EstimationError(f"the file is no bank or is damaged: {error}", where=source.name) from error
 
 
@@ -193,43 +178,3 @@ def build_bank(
     except Cancelled:
         raise BankCancelled(joined(chunks) if chunks else None) from None
     return joined(chunks)
-
-
-def _write_aligned(archive: zipfile.ZipFile, name: str, array: Any) -> None:
-    """Store an array so that its data begin at a multiple of 64 bytes of the file (padding in the extra field)."""
-    buffer = io.BytesIO()
-    np.lib.format.write_array_header_1_0(buffer, np.lib.format.header_data_from_array_1_0(np.ascontiguousarray(array)))
-    npy_header = buffer.getvalue()
-    info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
-    # 30 bytes of local header and the name precede the extra field; force_zip64 adds its own 20 bytes
-    begin = archive.fp.tell() + 30 + len(name) + 20 + 4 + len(npy_header)  # type: ignore[union-attr]
-    padding = -begin % _ALIGNMENT
-    info.extra = b"\x57\x53" + padding.to_bytes(2, "little") + bytes(padding)
-    with archive.open(info, "w", force_zip64=True) as member:
-        member.write(npy_header)
-        member.write(np.ascontiguousarray(array).reshape(-1).view(np.uint8).data)
-
-
-def _read_array(archive: zipfile.ZipFile, path: Path, name: str, *, memory_map: bool) -> Any:
-    if not memory_map:
-        with archive.open(name) as member:
-            return np.lib.format.read_array(member, allow_pickle=False)
-    info = archive.getinfo(name)
-    if info.compress_type != zipfile.ZIP_STORED:
-        raise ValueError("its arrays are compressed")
-    with path.open("rb") as file:
-        file.seek(info.header_offset + 26)
-        name_length = int.from_bytes(file.read(2), "little")
-        extra_length = int.from_bytes(file.read(2), "little")
-        file.seek(info.header_offset + 30 + name_length + extra_length)
-        version = np.lib.format.read_magic(file)
-        if version != (1, 0):
-            raise ValueError("its arrays are of an unknown version")
-        shape, fortran_order, dtype = np.lib.format.read_array_header_1_0(file)
-        if fortran_order or dtype.hasobject:
-            raise ValueError("its arrays are of an unknown kind")
-        if file.tell() + dtype.itemsize * int(np.prod(shape)) > path.stat().st_size:
-            raise ValueError("it is truncated")
-        if 0 in shape:  # a model without parameters; an empty range cannot be mapped
-            return np.empty(shape, dtype)
-        return np.memmap(path, dtype, "r", file.tell(), shape)
