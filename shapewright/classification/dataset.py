@@ -1,156 +1,205 @@
-"""Learning pictures of procedural models and their features, block by block (paper section 3.2).
+"""What a classifier learns from: which sources give how many meshes, and the stored features of all of them."""
 
-Every block of :data:`BLOCK` variations has its own random stream, named by the seed, the model's digest and the
-number of the block. So a class's features do not depend on the other classes, on their order, or on who computes
-which block, and a longer series begins with the shorter one.
-"""
-
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Final
 
 import numpy as np
-from jaxtyping import Bool, Float, Int, UInt8
+from jaxtyping import Bool, Float, Int
 
-from shapewright.classification.features import FeatureExtractor
+from shapewright.classification.array_store import ArrayStore
+from shapewright.classification.backbone import Backbone
+from shapewright.classification.chunks import Chunk, chunks_of, descriptors_key, features_key
 from shapewright.classification.settings import TrainingSettings
+from shapewright.classification.sources import (
+    AssemblySource,
+    DistortedSource,
+    InstanceGenerator,
+    MixedSource,
+    ModelSource,
+    Source,
+)
 from shapewright.errors import ClassifierError
-from shapewright.mesh import TriangleMesh
-from shapewright.progress import NULL_PROGRESS, Progress
-from shapewright.rendering.images import render_images
-from shapewright.rendering.views import random_views
 
-BLOCK = 16
-"""Variations that are evaluated, drawn and described together; bounds the memory."""
+TRIALS_SHARE: Final = 0.2
+"""Distorted and mixed objects, as a share of the objects of each other kind without a class."""
 
 
-@runtime_checkable
-class _Described(Protocol):
+@dataclass(frozen=True)
+class Share:
+    """What one source gives.
+
+    Args:
+        source: where the meshes come from.
+        label: class number; the number of classes for objects that are of none.
+        count: meshes.
+        described: whether panorama descriptors are wanted, too.
+        learned: whether the last layer learns from them, or they only try it.
+    """
+
+    source: Source
+    label: int
+    count: int
+    described: bool
+    learned: bool = True
+
     @property
-    def name(self) -> str: ...
+    def chunks(self) -> list[Chunk]:
+        """The share as units of work."""
+        return chunks_of(self.source, self.count)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """All that a training draws.
+
+    Args:
+        class_names: in the order of their numbers.
+        shares: by class, then objects of no class.
+    """
+
+    class_names: tuple[str, ...]
+    shares: tuple[Share, ...]
 
     @property
-    def digest(self) -> str: ...
+    def chunks(self) -> list[tuple[Chunk, bool]]:
+        """Every unit of work, and whether it wants descriptors."""
+        return [(chunk, share.described) for share in self.shares for chunk in share.chunks]
 
 
-@runtime_checkable
-class InstanceGenerator(Protocol):
-    """What learning needs of a compiled procedural model; :class:`shapewright.modeling.CompiledModel` is one."""
+def plan_learning(
+    classes: Mapping[str, Sequence[InstanceGenerator]],
+    negatives: Sequence[InstanceGenerator],
+    settings: TrainingSettings,
+) -> Plan:
+    """Share out the meshes of each class among its models, and add objects of no class.
 
-    @property
-    def model(self) -> _Described:
-        """The model: its name and the digest of its document."""
-        ...
+    Args:
+        classes: compiled models of each class.
+        negatives: compiled models of things that are none of the classes.
+        settings: how many.
 
-    def random_values(self, rng: np.random.Generator, count: int) -> Float[np.ndarray, "B P"]:
-        """Parameter values drawn uniformly within their ranges, what is not active left at the base."""
-        ...
+    Raises:
+        ClassifierError: fewer than two classes, a class without models or with more models than variations.
+    """
+    if len(classes) < 2:
+        raise ClassifierError("a classifier tells at least two classes apart", where="classes")
+    for name, generators in classes.items():
+        if not generators:
+            raise ClassifierError("the class has no models", where=f"classes.{name}")
+        if len(generators) > settings.variations:
+            raise ClassifierError("the class has more models than variations", where=f"classes.{name}")
+    described = settings.exemplars and settings.vary
+    shares = [
+        Share(ModelSource(generator, settings.vary), number, count, described)
+        for number, generators in enumerate(classes.values())
+        for generator, count in zip(generators, evenly(settings.variations, len(generators)), strict=True)
+    ]
+    none, amount = len(classes), settings.negatives
+    if amount:
+        others = list(negatives)[:amount]
+        shares += [
+            Share(ModelSource(generator), none, count, described)
+            for generator, count in zip(others, evenly(amount, len(others)), strict=True)
+        ]
+        shares.append(Share(AssemblySource(), none, amount, described))
+        known = tuple(generator for generators in classes.values() for generator in generators)
+        trials = max(1, round(amount * TRIALS_SHARE))
+        shares += [
+            Share(source, none, trials, described, learned=False)
+            for source in (DistortedSource(known), MixedSource(known))
+        ]
+    return Plan(tuple(classes), tuple(shares))
 
-    def instances(self, values: Float[np.ndarray, "B P"], steps: int = 2) -> Iterator[TriangleMesh]:
-        """The subdivided surface of each row, without the parts that it lacks."""
-        ...
+
+def evenly(total: int, parts: int) -> list[int]:
+    """Whole numbers that differ by one at most and add up to ``total``."""
+    return [total // parts + (index < total % parts) for index in range(parts)]
 
 
 @dataclass(frozen=True, eq=False)
 class FeatureSet:
-    """Features of all learning pictures.
+    """Features of all learning pictures, the pictures of a mesh together.
 
     Args:
-        features: one row a picture, the pictures of a variation together.
-        labels: class number of each picture.
-        variations: number of the variation each picture shows, counted through all classes.
-        held_out: whether a picture's variation is held out.
+        features: one row a picture, as they are stored (half precision).
+        views: pictures of each mesh.
+        labels: class number of each mesh; ``class_count`` for objects of no class.
+        sources: number of the share that each mesh belongs to.
+        learned: whether the last layer learns from each mesh (before some are held out).
+        held_out: whether each mesh is kept for early stopping and calibration.
+        class_count: number of classes.
     """
 
     features: Float[np.ndarray, "N D"]
-    labels: Int[np.ndarray, " N"]
-    variations: Int[np.ndarray, " N"]
-    held_out: Bool[np.ndarray, " N"]
+    views: int
+    labels: Int[np.ndarray, " M"]
+    sources: Int[np.ndarray, " M"]
+    learned: Bool[np.ndarray, " M"]
+    held_out: Bool[np.ndarray, " M"]
+    class_count: int
+
+    def rows(self, meshes: Bool[np.ndarray, " M"]) -> Int[np.ndarray, " K"]:
+        """The rows of ``features`` that show these meshes."""
+        return (np.flatnonzero(meshes)[:, None] * self.views + np.arange(self.views)).reshape(-1)
+
+    def row_labels(self, rows: Int[np.ndarray, " K"]) -> Int[np.ndarray, " K"]:
+        """The labels of rows of ``features``."""
+        return self.labels[rows // self.views]
 
 
-def variation_images(
-    generator: InstanceGenerator, block: int, count: int, settings: TrainingSettings
-) -> UInt8[np.ndarray, "N H W 3"]:
-    """Pictures of the first ``count`` (at most :data:`BLOCK`) variations of a block.
-
-    Returns:
-        count * images_per_variation pictures, those of one variation together.
-
-    Raises:
-        RenderingError: no headless OpenGL.
-    """
-    digest = int.from_bytes(bytes.fromhex(generator.model.digest)[:8], "big")
-    rng = np.random.default_rng([settings.seed, digest, block])
-    values = generator.random_values(rng, BLOCK)[:count]
-    views = settings.images_per_variation
-    rotations, scales = random_views(rng, BLOCK * views, scale_range=settings.scale_range)
-    return render_images(
-        # one by one: a picture is normalised by the vertices that are there (paper section 3.2)
-        list(generator.instances(values, settings.subdivision_steps)),
-        None,
-        rotations[: count * views],
-        scales[: count * views],
-        objects=np.repeat(np.arange(count), views),
-        size=settings.image_size,
-        style=settings.style,
-        window=settings.window,
-    )
-
-
-def class_features(
-    generators: Sequence[InstanceGenerator],
-    settings: TrainingSettings,
-    extractor: FeatureExtractor,
-    progress: Progress = NULL_PROGRESS,
-) -> Float[np.ndarray, "N D"]:
-    """Features of one class's pictures; several models of a class share its variations evenly.
-
-    Pictures live only as long as their block.
+def load_features(plan: Plan, settings: TrainingSettings, backbone: Backbone, store: ArrayStore) -> FeatureSet:
+    """Join the stored features of a plan and choose the held-out meshes, by the seed and for each class alone.
 
     Raises:
-        RenderingError: no headless OpenGL.
-        Cancelled: by ``progress``.
+        ClassifierError: a chunk is not stored.
     """
-    views = settings.images_per_variation
-    out = np.empty((settings.variations * views, extractor.backbone.feature_count), dtype=np.float32)
-    done = 0
-    for generator, block, count in _blocks(generators, settings.variations):
-        progress.report(done / settings.variations, f"{generator.model.name}: {done * views} pictures")
-        images = variation_images(generator, block, count, settings)
-        out[done * views : (done + count) * views] = extractor(images)
-        done += count
-    return out
-
-
-def _blocks(generators: Sequence[InstanceGenerator], variations: int) -> Iterator[tuple[InstanceGenerator, int, int]]:
-    shares = [len(part) for part in np.array_split(np.arange(variations), len(generators))]
-    for generator, share in zip(generators, shares, strict=True):
-        for block, start in enumerate(range(0, share, BLOCK)):
-            yield generator, block, min(BLOCK, share - start)
-
-
-def join_classes(classes: Sequence[Float[np.ndarray, "N D"]], settings: TrainingSettings) -> FeatureSet:
-    """Join the features of all classes and choose the held-out variations, by the seed and for each class alone.
-
-    Raises:
-        ClassifierError: fewer than two classes.
-    """
-    if len(classes) < 2:
-        raise ClassifierError("a classifier tells at least two classes apart", where="classes")
-    views = settings.images_per_variation
-    count = settings.variations
-    kept_apart = min(max(1, round(count * settings.held_out)), count - 1)
-    labels, variations, held_out = [], [], []
-    for number in range(len(classes)):
-        mask = np.zeros(count, dtype=bool)
-        rng = np.random.default_rng([settings.seed, number])
-        mask[rng.choice(count, size=kept_apart, replace=False)] = True
-        labels.append(np.full(count * views, number))
-        variations.append(np.repeat(np.arange(count) + number * count, views))
-        held_out.append(np.repeat(mask, views))
+    parts, labels, sources, learned = [], [], [], []
+    for number, share in enumerate(plan.shares):
+        parts += [_stored(store, features_key(chunk, settings, backbone)) for chunk in share.chunks]
+        labels.append(np.full(share.count, share.label))
+        sources.append(np.full(share.count, number))
+        learned.append(np.full(share.count, share.learned))
+    feature_count, views = parts[0].shape[2], parts[0].shape[1]
+    features = np.empty((sum(len(part) for part in parts), views, feature_count), dtype=np.float16)
+    start = 0
+    for part in parts:
+        features[start : start + len(part)] = part
+        start += len(part)
+    label, is_learned = np.concatenate(labels), np.concatenate(learned)
     return FeatureSet(
-        features=np.concatenate(classes),
-        labels=np.concatenate(labels),
-        variations=np.concatenate(variations),
-        held_out=np.concatenate(held_out),
+        features=features.reshape(-1, feature_count),
+        views=views,
+        labels=label,
+        sources=np.concatenate(sources),
+        learned=is_learned,
+        held_out=_held_out(np.where(is_learned, label, -1), settings),
+        class_count=len(plan.class_names),
     )
+
+
+def _held_out(labels: Int[np.ndarray, " M"], settings: TrainingSettings) -> Bool[np.ndarray, " M"]:
+    """Choose meshes of each label for itself; negative labels give none."""
+    mask = np.zeros(len(labels), dtype=bool)
+    for label in np.unique(labels[labels >= 0]):
+        meshes = np.flatnonzero(labels == label)
+        count = min(max(1, round(len(meshes) * settings.held_out)), len(meshes) - 1)
+        mask[np.random.default_rng([settings.seed, int(label)]).choice(meshes, size=count, replace=False)] = True
+    return mask
+
+
+def load_descriptors(plan: Plan, settings: TrainingSettings, store: ArrayStore) -> Float[np.ndarray, "M D"]:
+    """Join the stored panorama descriptors of a plan, one row a mesh.
+
+    Raises:
+        ClassifierError: a chunk is not stored.
+    """
+    chunks = [chunk for share in plan.shares for chunk in share.chunks]
+    return np.concatenate([_stored(store, descriptors_key(chunk, settings)) for chunk in chunks])
+
+
+def _stored(store: ArrayStore, key: str) -> np.ndarray:
+    found = store.get(key)
+    if found is None:
+        raise ClassifierError("an array that the training needs is not stored", where=key)
+    return found

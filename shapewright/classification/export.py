@@ -2,13 +2,19 @@
 
 import json
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from shapewright.classification.backbone import Backbone
+from shapewright.classification.calibration import Calibration
 from shapewright.classification.file_format import FORMAT, FORMAT_VERSION, METADATA_KEY
 from shapewright.classification.graphs import classifier_graph
 from shapewright.classification.head import Head
 from shapewright.classification.settings import TrainingSettings
+
+NORMALISATIONS: Final[dict[str, str]] = {
+    "paper": "vertex mean to the origin, coordinates within [-1, 1]",
+    "sphere": "middle of the bounding box to the origin, the farthest point at distance 1",
+}
 
 
 @dataclass(frozen=True)
@@ -32,6 +38,7 @@ def classifier_metadata(
     backbone: Backbone,
     settings: TrainingSettings,
     metrics: dict[str, Any],
+    calibration: Calibration,
 ) -> dict[str, Any]:
     """All that one has to know to use a classifier and to make it again, as JSON values."""
     return {
@@ -48,9 +55,14 @@ def classifier_metadata(
         "rendering": {
             "style": settings.style,
             "image_size": settings.image_size,
+            "framing": settings.framing,
             "window": settings.window,
             "scale_range": list(settings.scale_range),
-            "normalisation": "vertex mean to the origin, coordinates within [-1, 1]",
+            "normalisation": NORMALISATIONS[settings.framing],
+        },
+        "known": {
+            name: None if curve is None else curve.to_dict()
+            for name, curve in (("pictures", calibration.pictures), ("geometry", calibration.geometry))
         },
         "settings": settings.to_dict(),
         "metrics": metrics,
@@ -58,7 +70,7 @@ def classifier_metadata(
 
 
 def export_classifier(backbone: Backbone, head: Head, metadata: dict[str, Any]) -> bytes:
-    """One ONNX file: ``images`` uint8 (N, H, W, 3) to ``probabilities`` (N, C), and ``features`` beside them.
+    """One ONNX file: ``images`` uint8 (N, H, W, 3) to ``probabilities`` (N, C); ``open_probabilities`` and ``features``.
 
     Args:
         backbone: what the head was trained on.
@@ -70,6 +82,7 @@ def export_classifier(backbone: Backbone, head: Head, metadata: dict[str, Any]) 
         backbone.graph,
         head.weight,
         head.bias,
+        head.class_count,
         head.temperature,
         image_size=int(metadata["rendering"]["image_size"]),
         metadata={

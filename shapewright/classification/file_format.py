@@ -1,6 +1,6 @@
 """Names that the writer and the reader of a classifier's file share."""
 
 FORMAT = "shapewright-classifier"
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 METADATA_KEY = "shapewright"
-IMAGES, FEATURES, PROBABILITIES = "images", "features", "probabilities"
+IMAGES, FEATURES, PROBABILITIES, OPEN_PROBABILITIES = "images", "features", "probabilities", "open_probabilities"

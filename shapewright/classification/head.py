@@ -1,4 +1,4 @@
-"""The last layer: learned with torch on stored features, stopped early, calibrated (paper section 3.2)."""
+"""The last layer: learned with torch on stored features, stopped early (paper section 3.2)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,62 +7,83 @@ from typing import Any
 import numpy as np
 import torch
 from jaxtyping import Float, Int
-from scipy.optimize import minimize_scalar
 from torch.nn import functional
 
 from shapewright.classification.dataset import FeatureSet
 from shapewright.classification.settings import TrainingSettings
 from shapewright.progress import NULL_PROGRESS, Progress
 
-MAX_TEMPERATURE = 20.0
-
 
 @dataclass(frozen=True, eq=False)
 class Head:
     """A trained last layer: class values = features · weightᵀ + bias, divided by the temperature.
 
+    It may have one row more than there are classes, for objects that are of none.
+
     Args:
-        weight: one row a class; the standardisation of the features is folded in.
-        bias: one number a class.
+        weight: one row a class value; the standardisation of the features is folded in.
+        bias: one number a class value.
+        class_count: number of classes, C.
         temperature: softens the class values so that probabilities mean what they say; at least 1.
         curves: figures of each epoch: train_loss, held_out_loss, held_out_accuracy.
         best_epoch: the epoch, from 0, whose weights these are.
     """
 
-    weight: Float[np.ndarray, "C D"]
-    bias: Float[np.ndarray, " C"]
+    weight: Float[np.ndarray, "K D"]
+    bias: Float[np.ndarray, " K"]
+    class_count: int
     temperature: float
     curves: dict[str, list[float]]
     best_epoch: int
 
+    def values(self, features: Float[np.ndarray, "N D"]) -> Float[np.ndarray, "N K"]:
+        """Class values before the temperature."""
+        return np.asarray(features.astype(np.float32) @ self.weight.T + self.bias)
+
     def probabilities(self, features: Float[np.ndarray, "N D"]) -> Float[np.ndarray, "N C"]:
-        """Calibrated class probabilities, as the exported graph gives them."""
-        return _softmax((features @ self.weight.T + self.bias) / self.temperature)
+        """Calibrated probabilities of the classes, given that it is one of them; as the exported graph gives them."""
+        return softmax(self.values(features)[:, : self.class_count] / self.temperature)
+
+    def open_probabilities(self, features: Float[np.ndarray, "N D"]) -> Float[np.ndarray, "N C"]:
+        """Probabilities of the classes where ``none`` has a share, too; rows add up to 1 or less."""
+        return softmax(self.values(features) / self.temperature)[:, : self.class_count]
 
 
 def train_head(
-    data: FeatureSet, class_count: int, settings: TrainingSettings, progress: Progress = NULL_PROGRESS
+    data: FeatureSet,
+    settings: TrainingSettings,
+    progress: Progress = NULL_PROGRESS,
+    *,
+    learned: Int[np.ndarray, " L"] | None = None,
+    apart: Int[np.ndarray, " A"] | None = None,
 ) -> Head:
     """Learn the last layer by cross entropy with Adam on standardised features, from zero weights.
 
-    Weights of the epoch with the lowest held-out loss are kept. Deterministic: only the order of the pictures is
-    random, and it comes from the seed. Torch's global generator is left alone.
+    Weights of the epoch with the lowest loss on the pictures that are kept apart are kept. Deterministic: only the
+    order of the pictures is random, and it comes from the seed. Torch's global generator is left alone.
+
+    Args:
+        data: features of all pictures.
+        settings: how to learn.
+        progress: hears of every epoch; may cancel.
+        learned: rows to learn from; by default all that are learned and not held out.
+        apart: rows for early stopping; by default the held-out ones.
 
     Raises:
         Cancelled: by ``progress``.
     """
-    learned = np.flatnonzero(~data.held_out)
-    apart = np.flatnonzero(data.held_out)
+    learned = data.rows(data.learned & ~data.held_out) if learned is None else learned
+    apart = data.rows(data.held_out) if apart is None else apart
     mean, deviation = _mean_and_deviation(data.features, learned)
-    weight = torch.zeros((class_count, data.features.shape[1]), requires_grad=True)
-    bias = torch.zeros(class_count, requires_grad=True)
+    width = int(data.labels[data.learned].max()) + 1
+    weight = torch.zeros((width, data.features.shape[1]), requires_grad=True)
+    bias = torch.zeros(width, requires_grad=True)
     groups: list[dict[str, Any]] = [
         {"params": [weight], "weight_decay": settings.weight_decay},
         {"params": [bias]},
     ]
     optimizer = torch.optim.Adam(groups, lr=settings.learning_rate)
     batch_of = _batches(data, mean, deviation)
-    apart_features, apart_labels = batch_of(apart)
     rng = np.random.default_rng(settings.seed)
     curves: dict[str, list[float]] = {"train_loss": [], "held_out_loss": [], "held_out_accuracy": []}
     best_loss, best_epoch = np.inf, 0
@@ -77,10 +98,7 @@ def train_head(
             loss.backward()  # type: ignore[no-untyped-call]
             optimizer.step()
             total += float(loss.detach()) * len(labels)
-        with torch.no_grad():
-            values = functional.linear(apart_features, weight, bias)
-            held_out_loss = float(functional.cross_entropy(values, apart_labels))
-            accuracy = float((values.argmax(dim=1) == apart_labels).float().mean())
+        held_out_loss, accuracy = _loss_and_accuracy(batch_of, apart, weight, bias)
         curves["train_loss"].append(total / len(order))
         curves["held_out_loss"].append(held_out_loss)
         curves["held_out_accuracy"].append(accuracy)
@@ -96,43 +114,47 @@ def train_head(
             break
     folded = best[0].numpy().astype(np.float64) / deviation
     shifted = best[1].numpy().astype(np.float64) - folded @ mean
-    weight_np, bias_np = folded.astype(np.float32), shifted.astype(np.float32)
-    values_np = data.features[apart] @ weight_np.T + bias_np
     return Head(
-        weight=weight_np,
-        bias=bias_np,
-        temperature=fit_temperature(values_np, data.labels[apart]),
+        weight=folded.astype(np.float32),
+        bias=shifted.astype(np.float32),
+        class_count=data.class_count,
+        temperature=1.0,
         curves=curves,
         best_epoch=best_epoch,
     )
 
 
-def fit_temperature(values: Float[np.ndarray, "N C"], labels: Int[np.ndarray, " N"]) -> float:
-    """The temperature that makes held-out pictures most likely (Guo et al. 2017).
-
-    At least 1: held-out variations are easier than real meshes, so they may soften, never sharpen.
-    """
-
-    def loss(log_temperature: float) -> float:
-        scaled = values.astype(np.float64) / np.exp(log_temperature)
-        top = scaled.max(axis=1, keepdims=True)
-        log_sum = np.log(np.exp(scaled - top).sum(axis=1)) + top[:, 0]
-        return float((log_sum - scaled[np.arange(len(labels)), labels]).mean())
-
-    best = minimize_scalar(loss, bounds=(0.0, np.log(MAX_TEMPERATURE)), method="bounded")
-    return float(np.exp(best.x)) if loss(float(best.x)) < loss(0.0) else 1.0
+def softmax(values: Float[np.ndarray, "N C"]) -> Float[np.ndarray, "N C"]:
+    """Probabilities of each row."""
+    shifted = np.exp(values - values.max(axis=1, keepdims=True))
+    return np.asarray(shifted / shifted.sum(axis=1, keepdims=True))
 
 
-def _batches(
-    data: FeatureSet, mean: Float[np.ndarray, " D"], deviation: Float[np.ndarray, " D"]
-) -> Callable[[Int[np.ndarray, " B"]], tuple[torch.Tensor, torch.Tensor]]:
+_Batches = Callable[[Int[np.ndarray, " B"]], tuple[torch.Tensor, torch.Tensor]]
+
+
+def _batches(data: FeatureSet, mean: Float[np.ndarray, " D"], deviation: Float[np.ndarray, " D"]) -> _Batches:
     mean32, factor32 = mean.astype(np.float32), (1.0 / deviation).astype(np.float32)
 
     def batch_of(rows: Int[np.ndarray, " B"]) -> tuple[torch.Tensor, torch.Tensor]:
         features = (data.features[rows] - mean32) * factor32
-        return torch.from_numpy(features), torch.from_numpy(data.labels[rows])
+        return torch.from_numpy(features), torch.from_numpy(data.row_labels(rows))
 
     return batch_of
+
+
+def _loss_and_accuracy(
+    batch_of: _Batches, rows: Int[np.ndarray, " A"], weight: torch.Tensor, bias: torch.Tensor
+) -> tuple[float, float]:
+    """Mean loss and share of right pictures, piece by piece: no second copy of many features."""
+    loss, right = 0.0, 0.0
+    with torch.no_grad():
+        for part in np.array_split(rows, max(1, len(rows) // 4096)):
+            features, labels = batch_of(part)
+            values = functional.linear(features, weight, bias)
+            loss += float(functional.cross_entropy(values, labels, reduction="sum"))
+            right += float((values.argmax(dim=1) == labels).sum())
+    return loss / len(rows), right / len(rows)
 
 
 def _mean_and_deviation(
@@ -148,8 +170,3 @@ def _mean_and_deviation(
     mean = total / len(rows)
     deviation = np.sqrt(np.maximum(squares / len(rows) - mean * mean, 0.0))
     return mean, np.where(deviation > 1e-6, deviation, 1.0)
-
-
-def _softmax(values: Float[np.ndarray, "N C"]) -> Float[np.ndarray, "N C"]:
-    shifted = np.exp(values - values.max(axis=1, keepdims=True))
-    return np.asarray(shifted / shifted.sum(axis=1, keepdims=True))

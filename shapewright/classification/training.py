@@ -1,22 +1,26 @@
-"""From procedural models to a classifier: draw, describe, learn, export (paper section 3.2)."""
+"""From procedural models to a classifier: draw, describe, learn, calibrate, export (paper section 3.2)."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float
 
+from shapewright.classification.array_store import ArrayStore, MemoryStore
 from shapewright.classification.backbone import load_backbone
-from shapewright.classification.dataset import FeatureSet, InstanceGenerator, class_features, join_classes
+from shapewright.classification.calibration import calibrate
+from shapewright.classification.chunks import is_stored, store_chunk
+from shapewright.classification.dataset import FeatureSet, Plan, load_descriptors, load_features, plan_learning
+from shapewright.classification.exemplars import Exemplars, exemplars_of
 from shapewright.classification.export import ModelReference, classifier_metadata, export_classifier
 from shapewright.classification.features import FeatureExtractor
 from shapewright.classification.head import Head, train_head
 from shapewright.classification.settings import TrainingSettings
-from shapewright.errors import ClassifierError
+from shapewright.classification.sources import InstanceGenerator
 from shapewright.progress import NULL_PROGRESS, PartialProgress, Progress
 
-IMAGES_SHARE = 0.92
+IMAGES_SHARE = 0.85
 """Share of the work that drawing and describing takes, for the progress shown."""
 
 
@@ -26,13 +30,15 @@ class TrainedClassifier:
 
     Args:
         onnx: the classifier's file, see :class:`shapewright.classification.Classifier`.
+        exemplars: the geometric evidence that goes with it; ``None`` if the settings want none.
         class_names: in the order of the probabilities.
-        metrics: figures of the training as JSON values: counts, held-out accuracy of pictures and of variations
-            (pictures averaged), accuracy of each class, confusion, loss, calibration error, curves.
+        metrics: figures of the training as JSON values: counts, accuracy on held-out variations and on
+            variations of left-out models, accuracy of each class, confusion, loss, calibration error, curves.
         metadata: what the file says about itself.
     """
 
     onnx: bytes
+    exemplars: Exemplars | None
     class_names: tuple[str, ...]
     metrics: dict[str, Any]
     metadata: dict[str, Any]
@@ -42,49 +48,95 @@ def train_classifier(
     classes: Mapping[str, Sequence[InstanceGenerator]],
     settings: TrainingSettings | None = None,
     progress: Progress = NULL_PROGRESS,
+    *,
+    negatives: Sequence[InstanceGenerator] = (),
+    store: ArrayStore | None = None,
 ) -> TrainedClassifier:
     """Learn to tell classes apart from random variations of their procedural models alone.
 
     Args:
         classes: compiled models of each class; several models of a class share its variations.
-        settings: the paper's by default (1000 variations of 10 pictures a class).
+        settings: 1000 variations of 10 pictures a class, as the paper has them, if not given.
         progress: hears of every block of variations and every epoch.
+        negatives: compiled models of things that are none of the classes, for telling what is unknown.
+        store: keeps features and descriptors for the next training, which computes only what is new; by default
+            they are forgotten.
 
     Raises:
         ClassifierError: fewer than two classes, a class without models.
         RenderingError: no headless OpenGL.
-        Cancelled: by ``progress``; nothing is kept.
+        Cancelled: by ``progress``; what is in the store stays there.
     """
     settings = settings or TrainingSettings()
-    class_names = tuple(classes)
-    if len(class_names) < 2:
-        raise ClassifierError("a classifier tells at least two classes apart", where="classes")
-    for name, generators in classes.items():
-        if not generators:
-            raise ClassifierError("the class has no models", where=f"classes.{name}")
-        if len(generators) > settings.variations:
-            raise ClassifierError("the class has more models than variations", where=f"classes.{name}")
+    plan = plan_learning(classes, negatives, settings)
+    store = MemoryStore() if store is None else store
+    draw_and_describe(plan, settings, store, PartialProgress(progress, 0.0, IMAGES_SHARE))
+    return learn(plan, settings, store, PartialProgress(progress, IMAGES_SHARE, 1.0))
+
+
+def draw_and_describe(
+    plan: Plan, settings: TrainingSettings, store: ArrayStore, progress: Progress = NULL_PROGRESS
+) -> None:
+    """Fill the store with what a plan needs and the store lacks, chunk by chunk.
+
+    Raises:
+        RenderingError: no headless OpenGL.
+        Cancelled: by ``progress``; finished chunks stay in the store.
+    """
     progress.report(0.0, "loading the backbone")
     backbone = load_backbone(settings.backbone)
-    extractor = FeatureExtractor(backbone)
-    features = []
-    for number, name in enumerate(class_names):
-        start, end = (IMAGES_SHARE * step / len(class_names) for step in (number, number + 1))
-        part = PartialProgress(progress, start, end)
-        features.append(class_features(classes[name], settings, extractor, part))
-    data = join_classes(features, settings)
-    del features
-    head = train_head(data, len(class_names), settings, PartialProgress(progress, IMAGES_SHARE, 0.99))
-    metrics = held_out_metrics(data, head, class_names)
-    models = tuple(
-        ModelReference(name=generator.model.name, class_name=name, digest=generator.model.digest)
-        for name in class_names
-        for generator in classes[name]
+    missing = [
+        (chunk, described)
+        for chunk, described in plan.chunks
+        if not is_stored(chunk, settings, backbone, store, described)
+    ]
+    if not missing:
+        return
+    extractor = FeatureExtractor(backbone, threads=1)
+    total = sum(chunk.count for chunk, _ in missing)
+    done = 0
+    for chunk, described in missing:
+        part = PartialProgress(progress, done / total, (done + chunk.count) / total)
+        store_chunk(chunk, settings, extractor, store, described=described, progress=part)
+        done += chunk.count
+
+
+def learn(
+    plan: Plan, settings: TrainingSettings, store: ArrayStore, progress: Progress = NULL_PROGRESS
+) -> TrainedClassifier:
+    """Learn the last layer from a store that holds all that the plan needs.
+
+    Raises:
+        ClassifierError: something is missing in the store.
+        Cancelled: by ``progress``.
+    """
+    backbone = load_backbone(settings.backbone)
+    progress.report(0.0, "reading features")
+    data = load_features(plan, settings, backbone, store)
+    descriptors = exemplars = None
+    if settings.exemplars and settings.vary:
+        descriptors = load_descriptors(plan, settings, store)
+        exemplars = exemplars_of(plan, descriptors, settings.seed, settings.subdivision_steps)
+    head = train_head(data, settings, PartialProgress(progress, 0.05, 0.6))
+    calibration = calibrate(
+        plan,
+        data,
+        settings,
+        descriptors=descriptors,
+        exemplars=exemplars,
+        progress=PartialProgress(progress, 0.6, 0.98),
     )
-    metadata = classifier_metadata(class_names, models, backbone, settings, metrics)
+    head = replace(head, temperature=calibration.temperature)
+    metrics = {**held_out_metrics(data, head, plan.class_names), **calibration.metrics}
+    models = tuple(
+        ModelReference(name=share.source.name, class_name=plan.class_names[share.label], digest=share.source.digest)
+        for share in plan.shares
+        if share.label < len(plan.class_names)
+    )
+    metadata = classifier_metadata(plan.class_names, models, backbone, settings, metrics, calibration)
     onnx = export_classifier(backbone, head, metadata)
     progress.report(1.0, f"{100 * metrics['held_out_accuracy']:.1f} % of held-out variations right")
-    return TrainedClassifier(onnx=onnx, class_names=class_names, metrics=metrics, metadata=metadata)
+    return TrainedClassifier(onnx, exemplars, plan.class_names, metrics, metadata)
 
 
 def held_out_metrics(data: FeatureSet, head: Head, class_names: Sequence[str]) -> dict[str, Any]:
@@ -92,20 +144,19 @@ def held_out_metrics(data: FeatureSet, head: Head, class_names: Sequence[str]) -
 
     They come from the same models as the learning pictures: a check of the learning, no forecast for real meshes.
     """
-    rows = np.flatnonzero(data.held_out)
+    meshes = data.held_out & (data.labels < data.class_count)
+    rows = data.rows(meshes)
     probabilities = head.probabilities(data.features[rows])
-    labels = data.labels[rows]
-    _, first, number = np.unique(data.variations[rows], return_index=True, return_inverse=True)
-    averaged = np.zeros((len(first), len(class_names)))
-    np.add.at(averaged, number, probabilities)
-    truth, guess = labels[first], averaged.argmax(axis=1)
+    labels = data.row_labels(rows)
+    truth = data.labels[meshes]
+    guess = probabilities.reshape(len(truth), data.views, -1).mean(axis=1).argmax(axis=1)
     confusion = np.zeros((len(class_names), len(class_names)), dtype=np.int64)
     np.add.at(confusion, (truth, guess), 1)
     picture_right = probabilities.argmax(axis=1) == labels
     return {
-        "images": len(data.labels),
+        "images": len(data.features),
         "held_out_images": len(rows),
-        "held_out_variations": len(first),
+        "held_out_variations": len(truth),
         "held_out_accuracy": float((truth == guess).mean()),
         "held_out_image_accuracy": float(picture_right.mean()),
         "held_out_loss": float(-np.log(np.maximum(probabilities[np.arange(len(rows)), labels], 1e-12)).mean()),
@@ -119,9 +170,7 @@ def held_out_metrics(data: FeatureSet, head: Head, class_names: Sequence[str]) -
     }
 
 
-def calibration_error(
-    confidence: Float[np.ndarray, " N"], right: Int[np.ndarray, " N"] | np.ndarray, bins: int = 15
-) -> float:
+def calibration_error(confidence: Float[np.ndarray, " N"], right: Bool[np.ndarray, " N"], bins: int = 15) -> float:
     """Expected calibration error: mean gap between confidence and accuracy over equal bins (Guo et al. 2017)."""
     slot = np.minimum((confidence * bins).astype(np.int64), bins - 1)
     gaps = [

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from shapewright.rendering.images import render_images
     from shapewright.rendering.pictures import compose_side_by_side, render_mesh
     from shapewright.rendering.styles import SCALE_RANGE, STYLES, WINDOW, ImageStyle
-    from shapewright.rendering.views import even_views, random_views, three_quarter_view
+    from shapewright.rendering.views import even_views, random_views, spread_views, three_quarter_view
 
 _HOMES = {
     "SCALE_RANGE": "styles",
@@ -28,6 +28,7 @@ _HOMES = {
     "render_mesh": "pictures",
     "renderer_name": "context",
     "shared_context": "context",
+    "spread_views": "views",
     "three_quarter_view": "views",
 }
 
@@ -45,6 +46,7 @@ __all__ = [
     "render_mesh",
     "renderer_name",
     "shared_context",
+    "spread_views",
     "three_quarter_view",
 ]
 

@@ -10,7 +10,7 @@ from shapewright.errors import RenderingError
 from shapewright.mesh import TriangleMesh
 from shapewright.rendering.context import shared_context
 from shapewright.rendering.renderer import Scene, indirect_commands, renderer_for
-from shapewright.rendering.styles import STYLES, WINDOW, ImageStyle
+from shapewright.rendering.styles import STYLES, WINDOW, Framing, ImageStyle
 
 MAX_BATCH_VERTICES = 4_000_000
 """Vertices that one batch uploads at most, a single larger object apart."""
@@ -26,6 +26,7 @@ def render_images(
     size: int = 224,
     style: ImageStyle = "edges",
     window: float = WINDOW,
+    framing: Framing = "paper",
 ) -> UInt8[np.ndarray, "N H W 3"]:
     """Draw N pictures of M objects, each turned and scaled.
 
@@ -47,6 +48,7 @@ def render_images(
         size: pixels a side.
         style: see :data:`ImageStyle`.
         window: half the side of a picture, in units of the scaled object.
+        framing: how objects are normalised first, see :data:`Framing`.
 
     Returns:
         Pictures (N, size, size, 3), rows from top to bottom.
@@ -65,7 +67,7 @@ def render_images(
         out = np.empty((count, size, size, 3), dtype=np.uint8)
         for start, stop in _batches(shown, tiles, vertices):
             part = slice(start, stop)
-            scene = build_scene(vertices, triangles, rotations[part], scales[part], shown[part])
+            scene = build_scene(vertices, triangles, rotations[part], scales[part], shown[part], framing)
             renderer.draw(scene, out[part], STYLES[style], window=window)
     return out
 
@@ -76,13 +78,14 @@ def build_scene(
     rotations: Float[np.ndarray, "N 3 3"],
     scales: Float[np.ndarray, " N"],
     shown: Int[np.ndarray, " N"],
+    framing: Framing = "paper",
 ) -> Scene:
     """One batch for the renderer: only the objects it shows, normalised, one after the other."""
     used, shown = np.unique(shown, return_inverse=True)
     if isinstance(vertices, np.ndarray):
         assert triangles is not None
         chosen = vertices[used[0] : used[-1] + 1] if used[-1] - used[0] + 1 == len(used) else vertices[used]
-        normalized = normalized_positions(chosen)
+        normalized = normalized_positions(chosen, framing)
         low, high = normalized.min(axis=1), normalized.max(axis=1)
         positions = normalized.reshape(-1, 3)
         corners = triangles
@@ -91,7 +94,7 @@ def build_scene(
         corner_count = np.full(len(used), triangles.size)
     else:
         meshes = [vertices[i] for i in used]
-        parts = [normalized_positions(mesh.vertices[None])[0] for mesh in meshes]
+        parts = [normalized_positions(mesh.vertices[None], framing)[0] for mesh in meshes]
         low, high = (np.stack([end(part, axis=0) for part in parts]) for end in (np.min, np.max))
         positions = np.concatenate(parts)
         corners = np.concatenate([mesh.faces for mesh in meshes])
@@ -110,10 +113,16 @@ def build_scene(
     )
 
 
-def normalized_positions(vertices: Float[np.ndarray, "M V 3"]) -> Float[np.ndarray, "M V 3"]:
-    """Vertex mean to the origin, coordinates within ±1, as float32 (paper section 3.2)."""
-    centred = vertices - vertices.mean(axis=1, keepdims=True)
-    reach = np.abs(centred).max(axis=(1, 2), keepdims=True)
+def normalized_positions(
+    vertices: Float[np.ndarray, "M V 3"], framing: Framing = "paper"
+) -> Float[np.ndarray, "M V 3"]:
+    """Vertices as float32 with the origin and the size that :data:`Framing` says."""
+    if framing == "paper":
+        centred = vertices - vertices.mean(axis=1, keepdims=True)
+        reach = np.abs(centred).max(axis=(1, 2), keepdims=True)
+    else:
+        centred = vertices - (vertices.min(axis=1, keepdims=True) + vertices.max(axis=1, keepdims=True)) / 2
+        reach = np.sqrt((centred * centred).sum(axis=2)).max(axis=1)[:, None, None]
     return np.asarray(centred / np.where(reach > 0, reach, 1.0), dtype=np.float32)
 
 

@@ -91,7 +91,7 @@ class Renderer:
         target = self._target_for(size, style.oversampling, len(out))
         self._draw_surface(scene, target, side, window)
         program = self._program("picture.vert", "edges_common", f"{style.shader}.frag")
-        spacing = 2.0 * window / (2 * size)
+        spacing = 2.0 * window / (min(style.oversampling, 2) * size)
         self._set(
             program,
             surface=0,

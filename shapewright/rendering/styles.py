@@ -1,12 +1,18 @@
 """Looks of pictures and the numbers that frame them; plain values, no OpenGL."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Final, Literal, get_args
 
 SCALE_RANGE = (0.8, 2.0)
 """Scales of the learning images (paper section 3.2)."""
 WINDOW = 2.0
 """Half the side of a picture, in units of the scaled object (whose coordinates lie within ±1 at scale 1)."""
+
+Framing = Literal["paper", "sphere"]
+"""``paper``: vertex mean at the origin, coordinates within ±1 (section 3.2).
+``sphere``: middle of the bounding box at the origin, the farthest point at distance 1."""
+
+FRAMINGS: Final[tuple[Framing, ...]] = get_args(Framing)
 
 ImageStyle = Literal["edges", "shaded", "lambert", "depth", "normals", "fused"]
 """``edges``: grey fill with dark silhouettes, creases and steps, what classes are learned in.
@@ -37,7 +43,7 @@ STYLES: dict[str, Style] = {
     "lambert": Style("lambert", oversampling=2),
     "depth": Style("depth", oversampling=2),
     "normals": Style("normals", oversampling=2),
-    "fused": Style("fused", oversampling=2),
+    "fused": Style("fused", oversampling=1),
     "shaded": Style(
         "shaded",
         oversampling=2,

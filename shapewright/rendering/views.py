@@ -26,6 +26,19 @@ def random_views(
     return np.asarray(rotations, dtype=np.float64), rng.uniform(*scale_range, size=count)
 
 
+def spread_views(
+    rng: np.random.Generator, count: int, *, scale_range: tuple[float, float] = SCALE_RANGE
+) -> tuple[Float[np.ndarray, "N 3 3"], Float[np.ndarray, " N"]]:
+    """As :func:`random_views`, but the directions are spread evenly over the sphere, which is turned at random.
+
+    Each rotation alone is still uniformly random, and so is each scale.
+    """
+    directions = even_views(count)
+    rolls = Rotation.from_euler("z", rng.uniform(0.0, 2.0 * np.pi, count)).as_matrix().reshape(count, 3, 3)
+    whole = Rotation.random(rng=rng).as_matrix()
+    return np.asarray(rolls @ directions @ whole), rng.uniform(*scale_range, size=count)
+
+
 def even_views(count: int) -> Float[np.ndarray, "N 3 3"]:
     """Rotations that look at an object from evenly spread directions, the object's y axis upwards.
 

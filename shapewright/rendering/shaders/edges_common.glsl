@@ -51,7 +51,7 @@ uint lattice[12];  // of 4 x 4 samples around the pixel, without the corners: ro
 // Reads the lattice, whose inner 2 x 2 samples are the pixel; returns how much of the pixel is covered.
 // False in `anything` means that there is only background.
 float read_lattice(out bool anything) {
-    int stride = oversampling / 2;
+    int stride = max(oversampling / 2, 1);
     uint any_tint = 0u;
     for (int row = 0; row < 4; ++row) {
         for (int column = 0; column < 4; ++column) {

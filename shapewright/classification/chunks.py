@@ -1,0 +1,201 @@
+"""Learning pictures of one source, chunk by chunk: drawn, described, and stored (paper section 3.2).
+
+A chunk is the unit of work that any worker can take. Its meshes, views and scales come from a random stream of its
+own, named by the seed, the source's digest and the chunk's number. So what a chunk holds does not depend on other
+classes, on their order, or on who computes it, and a longer series begins with the shorter one.
+"""
+
+import hashlib
+import json
+from collections import deque
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import islice
+from typing import Final
+
+import numpy as np
+from jaxtyping import Float16, Float32, UInt8
+
+from shapewright.classification.array_store import ArrayStore
+from shapewright.classification.backbone import Backbone
+from shapewright.classification.features import FeatureExtractor
+from shapewright.classification.settings import TrainingSettings
+from shapewright.classification.sources import SERIES, Source
+from shapewright.mesh import TriangleMesh
+from shapewright.progress import NULL_PROGRESS, Progress
+from shapewright.rendering.images import render_images
+from shapewright.rendering.views import random_views
+
+BLOCK: Final = 8
+"""Meshes that are drawn and described together; bounds the memory."""
+PICTURES_VERSION: Final = 1
+"""Raise it when the renderer draws something else for the same settings."""
+_DESCRIBING_THREADS: Final = 2
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """The first ``count`` meshes of one series of a source.
+
+    Args:
+        source: gives the meshes.
+        number: which series, from 0.
+        count: at most :data:`shapewright.classification.sources.SERIES`.
+    """
+
+    source: Source
+    number: int
+    count: int
+
+    def meshes(self, settings: TrainingSettings) -> Iterator[TriangleMesh]:
+        """The meshes, one after the other."""
+        return self.source.meshes(self._generators(settings)[0], self.count, settings.subdivision_steps)
+
+    def views(self, settings: TrainingSettings) -> tuple[np.ndarray, np.ndarray]:
+        """Rotations (count, views, 3, 3) and scales (count, views) of the pictures."""
+        per_mesh = settings.images_per_variation
+        rng = self._generators(settings)[1]
+        rotations, scales = random_views(rng, SERIES * per_mesh, scale_range=settings.scale_range)
+        return rotations.reshape(SERIES, per_mesh, 3, 3)[: self.count], scales.reshape(SERIES, per_mesh)[: self.count]
+
+    def _generators(self, settings: TrainingSettings) -> tuple[np.random.Generator, np.random.Generator]:
+        return series_generators(settings.seed, self.source.digest, self.number)
+
+
+def series_generators(seed: int, digest: str, number: int) -> tuple[np.random.Generator, np.random.Generator]:
+    """The random streams of the meshes and of the views of one series of a source."""
+    first, second = np.random.default_rng([seed, int(digest[:16], 16), number]).spawn(2)
+    return first, second
+
+
+def chunks_of(source: Source, count: int) -> list[Chunk]:
+    """Cut ``count`` meshes of a source into chunks."""
+    return [
+        Chunk(source, number, min(SERIES, count - start)) for number, start in enumerate(range(0, count, SERIES))
+    ]
+
+
+def features_key(chunk: Chunk, settings: TrainingSettings, backbone: Backbone) -> str:
+    """Where the features of a chunk's pictures are stored: all that they depend on."""
+    look = {name: settings.to_dict()[name] for name in _PICTURE_SETTINGS} | {"version": PICTURES_VERSION}
+    rendering = hashlib.sha256(json.dumps(look, sort_keys=True).encode()).hexdigest()[:12]
+    return f"features/{backbone.key}/{rendering}/{_series_name(chunk, settings)}"
+
+
+def descriptors_key(chunk: Chunk, settings: TrainingSettings) -> str:
+    """Where the panorama descriptors of a chunk's meshes are stored."""
+    from shapewright.distances.panorama import VERSION
+
+    return f"panoramas/v{VERSION}-steps{settings.subdivision_steps}/{_series_name(chunk, settings)}"
+
+
+_PICTURE_SETTINGS: Final = (
+    "images_per_variation",
+    "image_size",
+    "scale_range",
+    "style",
+    "framing",
+    "window",
+    "subdivision_steps",
+)
+
+
+def _series_name(chunk: Chunk, settings: TrainingSettings) -> str:
+    return f"{chunk.source.digest[:32]}/{settings.seed}-{chunk.number}-{chunk.count}.npy"
+
+
+def is_stored(chunk: Chunk, settings: TrainingSettings, backbone: Backbone, store: ArrayStore, described: bool) -> bool:
+    """Whether nothing of a chunk is left to compute."""
+    return store.get(features_key(chunk, settings, backbone)) is not None and not (
+        described and store.get(descriptors_key(chunk, settings)) is None
+    )
+
+
+def store_chunk(
+    chunk: Chunk,
+    settings: TrainingSettings,
+    extractor: FeatureExtractor,
+    store: ArrayStore,
+    *,
+    described: bool,
+    progress: Progress = NULL_PROGRESS,
+) -> None:
+    """Compute what the store lacks of a chunk: the features of its pictures, and panorama descriptors if wanted.
+
+    Drawing and describing overlap: while one block is drawn, networks and descriptors work on the ones before.
+
+    Raises:
+        RenderingError: no headless OpenGL.
+        Cancelled: by ``progress``; nothing of this chunk is kept.
+    """
+    feature_key, panorama_key = features_key(chunk, settings, extractor.backbone), descriptors_key(chunk, settings)
+    needs_features = store.get(feature_key) is None
+    needs_panoramas = described and store.get(panorama_key) is None
+    if not (needs_features or needs_panoramas):
+        return
+    rotations, scales = chunk.views(settings)
+    features: list[Float16[np.ndarray, "N D"]] = []
+    panoramas: list[Float32[np.ndarray, "N D"]] = []
+    meshes = chunk.meshes(settings)
+    with ThreadPoolExecutor(_DESCRIBING_THREADS) as pool:
+        pending: deque[tuple[Future[np.ndarray] | None, Future[np.ndarray] | None]] = deque()
+
+        def take() -> None:
+            drawn, described_block = pending.popleft()
+            if drawn is not None:
+                features.append(drawn.result().astype(np.float16))
+            if described_block is not None:
+                panoramas.append(described_block.result())
+
+        done = 0
+        while block := list(islice(meshes, BLOCK)):
+            progress.report(done / chunk.count, f"{chunk.source.name}: {done} of {chunk.count}")
+            at = slice(done, done + len(block))
+            images = _pictures(block, rotations[at], scales[at], settings) if needs_features else None
+            pending.append(
+                (
+                    None if images is None else pool.submit(extractor, images),
+                    pool.submit(_panoramas, block) if needs_panoramas else None,
+                )
+            )
+            done += len(block)
+            if len(pending) > _DESCRIBING_THREADS:
+                take()
+        while pending:
+            take()
+    if needs_panoramas:
+        store.put(panorama_key, np.concatenate(panoramas))
+    if needs_features:
+        store.put(feature_key, np.concatenate(features).reshape(chunk.count, settings.images_per_variation, -1))
+
+
+def _pictures(
+    meshes: Sequence[TriangleMesh], rotations: np.ndarray, scales: np.ndarray, settings: TrainingSettings
+) -> UInt8[np.ndarray, "N H W 3"]:
+    return render_images(
+        meshes,
+        None,
+        rotations.reshape(-1, 3, 3),
+        scales.reshape(-1),
+        objects=np.repeat(np.arange(len(meshes)), settings.images_per_variation),
+        size=settings.image_size,
+        style=settings.style,
+        window=settings.window,
+        framing=settings.framing,
+    )
+
+
+def _panoramas(meshes: Sequence[TriangleMesh]) -> Float32[np.ndarray, "N D"]:
+    import numba
+
+    from shapewright.distances.panorama import panorama_descriptor
+
+    numba.set_num_threads(1)  # of this thread: the other cores draw
+    return np.stack([panorama_descriptor(mesh.vertices, mesh.faces).to_array() for mesh in meshes])
+
+
+def chunk_images(chunk: Chunk, settings: TrainingSettings) -> UInt8[np.ndarray, "N H W 3"]:
+    """The learning pictures of a chunk, those of one mesh together: to look at."""
+    rotations, scales = chunk.views(settings)
+    return _pictures(list(chunk.meshes(settings)), rotations, scales, settings)

@@ -1,0 +1,161 @@
+"""Where learning pictures come from: variations of procedural models, and objects that are of no class.
+
+A source gives the same meshes for the same generator, so its pictures and descriptors can be stored under its
+digest.
+"""
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final, Protocol, runtime_checkable
+
+import numpy as np
+from jaxtyping import Float
+
+from shapewright.classification import negatives
+from shapewright.mesh import TriangleMesh
+
+SERIES: Final = 64
+"""Meshes that one random generator gives at most; the shorter series are beginnings of the longer ones."""
+
+
+@runtime_checkable
+class _Described(Protocol):
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def digest(self) -> str: ...
+
+
+@runtime_checkable
+class InstanceGenerator(Protocol):
+    """What learning needs of a compiled procedural model; :class:`shapewright.modeling.CompiledModel` is one."""
+
+    @property
+    def model(self) -> _Described:
+        """The model: its name and the digest of its document."""
+        ...
+
+    def random_values(self, rng: np.random.Generator, count: int) -> Float[np.ndarray, "B P"]:
+        """Parameter values drawn uniformly within their ranges, what is not active left at the base."""
+        ...
+
+    def instances(self, values: Float[np.ndarray, "B P"], steps: int = 2) -> Iterator[TriangleMesh]:
+        """The subdivided surface of each row, without the parts that it lacks."""
+        ...
+
+
+class Source(Protocol):
+    """Gives random meshes to learn from: the same ones for the same generator, and the first ones of a longer series."""
+
+    @property
+    def name(self) -> str:
+        """For people and for progress."""
+        ...
+
+    @property
+    def digest(self) -> str:
+        """Changes with whatever changes the meshes; at least 16 hexadecimal digits."""
+        ...
+
+    def meshes(self, rng: np.random.Generator, count: int, steps: int) -> Iterator[TriangleMesh]:
+        """The first ``count`` (at most :data:`SERIES`) random meshes, subdivided ``steps`` times if they can be."""
+        ...
+
+
+@dataclass(frozen=True)
+class ModelSource:
+    """Random variations of a procedural model, or its base again and again.
+
+    Args:
+        generator: the compiled model.
+        varied: whether parameters are drawn at random; the paper's baseline learns without (section 4.2).
+    """
+
+    generator: InstanceGenerator
+    varied: bool = True
+
+    @property
+    def name(self) -> str:
+        """The model's name."""
+        return self.generator.model.name
+
+    @property
+    def digest(self) -> str:
+        """The digest of the model's document, another one without variation."""
+        digest = self.generator.model.digest
+        return digest if self.varied else hashlib.sha256(f"{digest} unvaried".encode()).hexdigest()
+
+    def values(self, rng: np.random.Generator, count: int) -> Float[np.ndarray, "B P"]:
+        """The parameter values of the meshes that the same generator gives."""
+        values = self.generator.random_values(rng, SERIES)[:count]
+        return values if self.varied else np.ones_like(values)
+
+    def meshes(self, rng: np.random.Generator, count: int, steps: int) -> Iterator[TriangleMesh]:
+        """The variations, without the parts that they lack: a picture is normalised by the vertices that are there."""
+        return self.generator.instances(self.values(rng, count), steps)
+
+
+@dataclass(frozen=True)
+class AssemblySource:
+    """Random assemblies of primitives."""
+
+    name: str = "assemblies"
+
+    @property
+    def digest(self) -> str:
+        """Changes with the version of the generator."""
+        return hashlib.sha256(f"{self.name} {negatives.VERSION}".encode()).hexdigest()
+
+    def meshes(self, rng: np.random.Generator, count: int, steps: int) -> Iterator[TriangleMesh]:
+        """Assemblies; ``steps`` means nothing to them."""
+        return (negatives.random_assembly(rng) for _ in range(count))
+
+
+@dataclass(frozen=True)
+class DistortedSource:
+    """Variations of some models, distorted beyond recognition."""
+
+    generators: Sequence[InstanceGenerator]
+    name: str = "distorted"
+
+    @property
+    def digest(self) -> str:
+        """Changes with the models and the version of the distortion."""
+        return _digest_of(self.name, self.generators)
+
+    def meshes(self, rng: np.random.Generator, count: int, steps: int) -> Iterator[TriangleMesh]:
+        """One distorted variation of a random model each."""
+        return (negatives.distorted(_any_instance(self.generators, rng, steps), rng) for _ in range(count))
+
+
+@dataclass(frozen=True)
+class MixedSource:
+    """Halves of variations of two models each."""
+
+    generators: Sequence[InstanceGenerator]
+    name: str = "mixed"
+
+    @property
+    def digest(self) -> str:
+        """Changes with the models and the version of the mixing."""
+        return _digest_of(self.name, self.generators)
+
+    def meshes(self, rng: np.random.Generator, count: int, steps: int) -> Iterator[TriangleMesh]:
+        """Two halves each, of two random models."""
+
+        def any_instance() -> TriangleMesh:
+            return _any_instance(self.generators, rng, steps)
+
+        return (negatives.mixed(any_instance(), any_instance(), rng) for _ in range(count))
+
+
+def _digest_of(name: str, generators: Sequence[InstanceGenerator]) -> str:
+    digests = " ".join(generator.model.digest for generator in generators)
+    return hashlib.sha256(f"{name} {negatives.VERSION} {digests}".encode()).hexdigest()
+
+
+def _any_instance(generators: Sequence[InstanceGenerator], rng: np.random.Generator, steps: int) -> TriangleMesh:
+    generator = generators[int(rng.integers(len(generators)))]
+    return next(iter(generator.instances(generator.random_values(rng, 1), steps)))
