@@ -73,7 +73,7 @@ def compose_sheet(
     font, large = ImageFont.load_default(11), ImageFont.load_default(14)
     top = _MARGIN
     for heading, cells in sections:
-        draw.text((_MARGIN, top), heading, fill=_INK, font=large)
+        draw.text((_MARGIN, top), _fitted(heading, sheet.width - 2 * _MARGIN, draw, large), fill=_INK, font=large)
         top += _HEADING
         for number, cell in enumerate(cells):
             x, y = _MARGIN + number % columns * pitch[0], top + number // columns * pitch[1]
