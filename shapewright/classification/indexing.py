@@ -9,6 +9,7 @@ import numpy as np
 
 from shapewright.classification.classifier import DEFAULT_VIEWS, Classification
 from shapewright.classification.collection_index import CollectionIndex
+from shapewright.classification.retrieval import MeshQuery
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor
 from shapewright.errors import MeshError
 from shapewright.mesh import TriangleMesh
@@ -40,6 +41,11 @@ class MeshFacts:
     picture_probabilities: dict[str, float]
     known: float
     descriptor: PanoramaDescriptor
+
+    def as_query(self, class_names: Sequence[str]) -> MeshQuery:
+        """The query for meshes like this one, in an index of these classes."""
+        row = np.array([self.probabilities[name] for name in class_names])
+        return MeshQuery(self.descriptor.to_array(), row, self.known)
 
 
 @dataclass(frozen=True)

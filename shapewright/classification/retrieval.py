@@ -61,6 +61,11 @@ class MeshQuery:
     probabilities: Float[np.ndarray, " C"]
     known: float = 1.0
 
+    @classmethod
+    def of(cls, index: CollectionIndex, row: int) -> "MeshQuery":
+        """Make the query for meshes like one of the index."""
+        return cls(np.asarray(index.descriptors[row]), np.asarray(index.probabilities[row]), float(index.known[row]))
+
 
 @dataclass(frozen=True)
 class RankedMesh:

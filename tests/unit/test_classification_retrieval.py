@@ -194,8 +194,11 @@ def test_a_base_instance_alone_is_the_papers_comparison(exemplars) -> None:
 @pytest.mark.parametrize("evidence", ["probabilities", "panorama", "combined"])
 def test_a_mesh_finds_itself_or_its_like_first(index: CollectionIndex, evidence) -> None:
     row = index.names.index("longer")
-    query = MeshQuery(index.descriptors[row], index.probabilities[row])
-    ranked = rank(index, query, evidence)
+    ranked = rank(index, MeshQuery.of(index, row), evidence)
+    facts = look_at(dict(collection())["longer"], ExtentClassifier())  # type: ignore[arg-type]
+    again = rank(index, facts.as_query(index.class_names), evidence)
+    assert names(again) == names(ranked)
+    np.testing.assert_allclose([one.score for one in again], [one.score for one in ranked], atol=1e-6)
     assert set(names(ranked)[:2]) == {"long", "longer"}
     if evidence == "panorama":
         assert ranked[0].name == "longer"
