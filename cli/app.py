@@ -7,7 +7,7 @@ from typing import Any, NoReturn
 import typer
 from typer.core import TyperGroup
 
-from cli import classify, demo, estimate, evaluate, instance, models, render, serve, train
+from cli import classify, demo, estimate, evaluate, instance, models, render, retrieve, serve, train
 from cli.console import flowing
 from shapewright.errors import Cancelled, ShapewrightError
 
@@ -92,6 +92,7 @@ for verb in (
     render.render,
     train.train,
     classify.classify,
+    retrieve.retrieve,
     estimate.estimate,
     serve.serve,
     demo.demo,

@@ -1,11 +1,12 @@
 """Where the verbs get procedural models and parameter values from: the shipped library, files, options."""
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from models_store.library.shipped import list_classes, list_shipped, load_shipped
-from shapewright.errors import ModelError, ParameterError
+from shapewright.errors import MeshFileError, ModelError, ParameterError
 
 if TYPE_CHECKING:
     from shapewright.modeling import CompiledModel, ProceduralModel
@@ -68,6 +69,28 @@ def load_classes(sources: list[str] | None) -> "dict[str, list[CompiledModel]]":
     for compiled in load_all_compiled(list(dict.fromkeys(names))):
         by_class.setdefault(compiled.model.class_name, []).append(compiled)
     return by_class
+
+
+def find_meshes(sources: Iterable[Path]) -> list[Path]:
+    """Find mesh files: those named, and below a folder those whose endings say so, in the order of names; once each.
+
+    Raises:
+        MeshFileError: a source is not there, or a folder holds none.
+    """
+    from shapewright.mesh_sniff import READABLE_TYPES
+
+    found: dict[Path, None] = {}
+    for source in sources:
+        if not source.is_dir():
+            if not source.exists():
+                raise MeshFileError("there is no such file or folder", where=ascii(str(source)))
+            found[source] = None
+            continue
+        below = [p for p in sorted(source.rglob("*")) if p.suffix.lower().lstrip(".") in READABLE_TYPES and p.is_file()]
+        if not below:
+            raise MeshFileError(f"no mesh below this folder ({', '.join(READABLE_TYPES)})", where=ascii(str(source)))
+        found.update(dict.fromkeys(below))
+    return list(found)
 
 
 def read_object(file: Path) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Learning classes from rendered variations and classifying meshes (paper section 3.2).
+"""Learning classes from rendered variations, classifying meshes and finding them (paper sections 3.2 and 4.2).
 
 Names are loaded when first used: :class:`Classifier` needs ONNX Runtime, only training needs torch.
 """
@@ -9,34 +9,58 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from shapewright.classification.backbone import BACKBONES, Backbone, load_backbone
     from shapewright.classification.classifier import Classification, Classifier
+    from shapewright.classification.collection_index import CollectionIndex
     from shapewright.classification.dataset import InstanceGenerator
+    from shapewright.classification.class_instances import gather_instances
     from shapewright.classification.features import FeatureExtractor
+    from shapewright.classification.indexing import Indexed, SkippedMesh, index_meshes, look_at
+    from shapewright.classification.retrieval import ClassQuery, MeshQuery, RankedMesh, rank
     from shapewright.classification.settings import TrainingSettings
     from shapewright.classification.training import TrainedClassifier, train_classifier
 
 _HOMES = {
     "BACKBONES": "backbone",
     "Backbone": "backbone",
+    "ClassQuery": "retrieval",
     "Classification": "classifier",
     "Classifier": "classifier",
+    "CollectionIndex": "collection_index",
     "FeatureExtractor": "features",
+    "Indexed": "indexing",
     "InstanceGenerator": "dataset",
+    "MeshQuery": "retrieval",
+    "RankedMesh": "retrieval",
+    "SkippedMesh": "indexing",
     "TrainedClassifier": "training",
     "TrainingSettings": "settings",
+    "gather_instances": "class_instances",
+    "index_meshes": "indexing",
     "load_backbone": "backbone",
+    "look_at": "indexing",
+    "rank": "retrieval",
     "train_classifier": "training",
 }
 
 __all__ = [
     "BACKBONES",
     "Backbone",
+    "ClassQuery",
     "Classification",
     "Classifier",
+    "CollectionIndex",
     "FeatureExtractor",
+    "Indexed",
     "InstanceGenerator",
+    "MeshQuery",
+    "RankedMesh",
+    "SkippedMesh",
     "TrainedClassifier",
     "TrainingSettings",
+    "gather_instances",
+    "index_meshes",
     "load_backbone",
+    "look_at",
+    "rank",
     "train_classifier",
 ]
 

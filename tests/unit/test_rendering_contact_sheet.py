@@ -1,15 +1,22 @@
-"""Contact sheets show the base, every parameter where it acts, and random variations."""
+"""Contact sheets show the base, every parameter where it acts, random variations; and sheets of any meshes."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from chair_model import armchair
+from simple_shapes import box, goblet, stool
 from small_dataset import rod
 
 from shapewright.errors import RenderingError
 from shapewright.modeling import CompiledModel
-from shapewright.rendering import compose_contact_sheet, render_mesh, three_quarter_view
+from shapewright.rendering import (
+    LabelledMesh,
+    compose_contact_sheet,
+    compose_mesh_sheet,
+    render_mesh,
+    three_quarter_view,
+)
 
 SIZE, MARGIN, LABEL, HEADING = 64, 6, 36, 26
 
@@ -76,3 +83,27 @@ def test_texts_of_strangers_fit_on_their_line() -> None:
         (length,) = model.parameters
         sheet = sheet_of(replace(model, parameters=(replace(length, label=label),)).compile(), variations=0)
         assert sheet.shape == plain.shape
+
+
+def test_meshes_are_drawn_in_sections_one_at_a_time() -> None:
+    taken: list[str] = []
+
+    def found():
+        for name, mesh in (("stool", stool()), ("box", box())):
+            taken.append(name)
+            yield LabelledMesh(mesh, name, "0.5")
+
+    sheet = compose_mesh_sheet([("query", [LabelledMesh(goblet(), "goblet")]), ("found", found())], size=SIZE)
+    assert taken == ["stool", "box"]
+    assert sheet.shape == (2 * (HEADING + SIZE + MARGIN + LABEL) + MARGIN, 2 * (SIZE + MARGIN) + MARGIN, 3)
+    (query,) = pictures(sheet, 1, 2)
+    assert not differ(query, render_mesh(goblet(), size=SIZE))
+    first, second = pictures(sheet, 2, 2, MARGIN + 2 * HEADING + SIZE + MARGIN + LABEL)
+    assert not differ(first, render_mesh(stool(), size=SIZE))
+    assert not differ(second, render_mesh(box(), size=SIZE))
+
+
+def test_a_heading_stays_on_its_line() -> None:
+    plain, long = (compose_mesh_sheet([(text, [LabelledMesh(box(), "box")])], size=SIZE) for text in ("a", "a\nb" * 99))
+    assert plain.shape == long.shape
+    np.testing.assert_array_equal(plain[MARGIN + HEADING :], long[MARGIN + HEADING :])

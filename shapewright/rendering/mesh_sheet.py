@@ -1,0 +1,46 @@
+"""A sheet of small pictures of meshes, each under a framing of its own."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, UInt8
+
+from shapewright.mesh import TriangleMesh
+from shapewright.rendering.pictures import render_mesh
+from shapewright.rendering.sheet import Cell, compose_sheet
+
+
+@dataclass(frozen=True, eq=False)
+class LabelledMesh:
+    """A mesh and the two lines below its picture."""
+
+    mesh: TriangleMesh
+    title: str
+    caption: str = ""
+
+
+def compose_mesh_sheet(
+    sections: Sequence[tuple[str, Iterable[LabelledMesh]]],
+    *,
+    rotation: Float[np.ndarray, "3 3"] | None = None,
+    size: int = 192,
+    columns: int = 6,
+) -> UInt8[np.ndarray, "H W 3"]:
+    """Draw meshes in sections, for example a query and what was found for it.
+
+    Args:
+        sections: heading and meshes; they are taken one at a time, so not all need be in memory.
+        rotation: turns every mesh; by default :func:`three_quarter_view`, y upwards.
+        size: pixels a side of each picture.
+        columns: pictures in a row, or fewer if no section has as many.
+
+    Raises:
+        RenderingError: no headless OpenGL, or a sheet of more than MAX_SIDE pixels a side.
+    """
+
+    def cell(one: LabelledMesh) -> Cell:
+        return Cell(render_mesh(one.mesh, rotation=rotation, size=size), one.title, one.caption)
+
+    drawn = [(heading, [cell(one) for one in meshes]) for heading, meshes in sections]
+    return compose_sheet(drawn, size, max(1, min(columns, max(len(cells) for _, cells in drawn))))
