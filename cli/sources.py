@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from models_store.library.shipped import list_classes, list_shipped, load_shipped
+from models_store.library.shipped import list_classes, list_further_classes, list_shipped, load_shipped
 from shapewright.errors import MeshFileError, ModelError, ParameterError
 
 if TYPE_CHECKING:
@@ -61,14 +61,24 @@ def load_class(class_name: str) -> "list[CompiledModel]":
 
 
 def load_classes(sources: list[str] | None) -> "dict[str, list[CompiledModel]]":
-    """Load models by class: of every class named, and each model or file named; every shipped one when none is."""
+    """Load models by class: of every class named, and each model or file named.
+
+    When none is named, of every shipped class but the further objects, which :func:`load_negatives` gives.
+    """
     classes = list_classes()
-    named = sources or list(classes)
+    further = list_further_classes()
+    named = sources or [name for name in classes if name not in further]
     names = [name for source in named for name in classes.get(source, [source])]
     by_class: dict[str, list[CompiledModel]] = {}
     for compiled in load_all_compiled(list(dict.fromkeys(names))):
         by_class.setdefault(compiled.model.class_name, []).append(compiled)
     return by_class
+
+
+def load_negatives(class_names: Iterable[str]) -> "list[CompiledModel]":
+    """Load the shipped models of the further objects that are none of these classes."""
+    classes, known = list_classes(), set(class_names)
+    return [load_compiled(name) for other in list_further_classes() if other not in known for name in classes[other]]
 
 
 def find_meshes(sources: Iterable[Path]) -> list[Path]:

@@ -8,57 +8,73 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from shapewright.classification.backbone import BACKBONES, Backbone, load_backbone
-    from shapewright.classification.classifier import Classification, Classifier
-    from shapewright.classification.collection_index import CollectionIndex
-    from shapewright.classification.dataset import InstanceGenerator
+    from shapewright.classification.array_store import ArrayStore, FolderStore, MemoryStore
     from shapewright.classification.class_instances import gather_instances
+    from shapewright.classification.classifier import UNKNOWN, Classification, Classifier, exemplars_file, load_classifier
+    from shapewright.classification.collection_index import CollectionIndex
+    from shapewright.classification.exemplars import Exemplars
     from shapewright.classification.features import FeatureExtractor
     from shapewright.classification.indexing import Indexed, SkippedMesh, index_meshes, look_at
     from shapewright.classification.retrieval import ClassQuery, MeshQuery, RankedMesh, rank
     from shapewright.classification.settings import TrainingSettings
+    from shapewright.classification.sources import InstanceGenerator
     from shapewright.classification.training import TrainedClassifier, train_classifier
 
 _HOMES = {
+    "ArrayStore": "array_store",
     "BACKBONES": "backbone",
     "Backbone": "backbone",
     "ClassQuery": "retrieval",
     "Classification": "classifier",
     "Classifier": "classifier",
     "CollectionIndex": "collection_index",
+    "Exemplars": "exemplars",
     "FeatureExtractor": "features",
+    "FolderStore": "array_store",
     "Indexed": "indexing",
-    "InstanceGenerator": "dataset",
+    "InstanceGenerator": "sources",
+    "MemoryStore": "array_store",
     "MeshQuery": "retrieval",
     "RankedMesh": "retrieval",
     "SkippedMesh": "indexing",
     "TrainedClassifier": "training",
     "TrainingSettings": "settings",
+    "UNKNOWN": "classifier",
+    "exemplars_file": "classifier",
     "gather_instances": "class_instances",
     "index_meshes": "indexing",
     "load_backbone": "backbone",
+    "load_classifier": "classifier",
     "look_at": "indexing",
     "rank": "retrieval",
     "train_classifier": "training",
 }
 
 __all__ = [
+    "ArrayStore",
     "BACKBONES",
     "Backbone",
     "ClassQuery",
     "Classification",
     "Classifier",
     "CollectionIndex",
+    "Exemplars",
     "FeatureExtractor",
+    "FolderStore",
     "Indexed",
     "InstanceGenerator",
+    "MemoryStore",
     "MeshQuery",
     "RankedMesh",
     "SkippedMesh",
     "TrainedClassifier",
     "TrainingSettings",
+    "UNKNOWN",
+    "exemplars_file",
     "gather_instances",
     "index_meshes",
     "load_backbone",
+    "load_classifier",
     "look_at",
     "rank",
     "train_classifier",

@@ -47,6 +47,7 @@ class Classification:
         probabilities: of the classes by all evidence, given that it is one of them; highest first.
         picture_probabilities: by the pictures alone, means over the views; highest first.
         scores: of the classes, see :mod:`shapewright.classification.evidence`; comparable between meshes.
+        picture_scores: the same by the pictures alone.
         distances: panorama distance of the nearest exemplar of each class; ``None`` without exemplars.
         descriptor: panorama descriptor of the mesh; ``None`` without exemplars.
         per_view: probabilities of each picture; columns in the order of the classifier's ``class_names``.
@@ -58,6 +59,7 @@ class Classification:
     probabilities: dict[str, float]
     picture_probabilities: dict[str, float]
     scores: dict[str, float]
+    picture_scores: dict[str, float]
     distances: dict[str, float] | None
     descriptor: PanoramaDescriptor | None
     per_view: Float[np.ndarray, "N C"]
@@ -172,6 +174,7 @@ class Classifier:
             probabilities=probabilities,
             picture_probabilities=self._ranked(pictured),
             scores=self._ranked(scores),
+            picture_scores=self._ranked(class_scores(opened)),
             distances=None if distances is None else self._ranked(distances, lowest_first=True),
             descriptor=descriptor,
             per_view=per_view,

@@ -74,9 +74,9 @@ def look_at(mesh: TriangleMesh, classifier: MeshClassifier, *, views: int = DEFA
     found = classifier.classify(mesh, views=views, rng=np.random.default_rng(SEED))
     return MeshFacts(
         probabilities=found.probabilities,
-        picture_probabilities=found.probabilities,
-        known=1.0,
-        descriptor=panorama_descriptor(mesh.vertices, mesh.faces),
+        picture_probabilities=found.picture_probabilities,
+        known=1.0 if found.known is None else found.known,
+        descriptor=found.descriptor or panorama_descriptor(mesh.vertices, mesh.faces),
     )
 
 

@@ -1,0 +1,69 @@
+"""Learning from the command line: what was drawn and described once is kept in the user's cache."""
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cli.evaluation_options import cache_folder
+from shapewright.progress import Progress
+from shapewright.whole_file import write_whole
+
+if TYPE_CHECKING:
+    from shapewright.classification import Classifier, TrainedClassifier, TrainingSettings
+    from shapewright.modeling import CompiledModel
+
+Classes = Mapping[str, "Sequence[CompiledModel]"]
+
+
+def learn(
+    classes: Classes,
+    negatives: "Sequence[CompiledModel]",
+    settings: "TrainingSettings",
+    progress: Progress,
+    cache: Path | None = None,
+) -> "TrainedClassifier":
+    """Train with the features that earlier trainings left in the cache."""
+    from shapewright.classification import FolderStore, train_classifier
+
+    store = FolderStore(cache_folder(cache, "learning"))
+    return train_classifier(classes, settings, progress, negatives=negatives, store=store)
+
+
+def save_classifier(trained: "TrainedClassifier", output: Path) -> None:
+    """Write the ONNX file, and its exemplars beside it."""
+    from shapewright.classification import exemplars_file
+
+    output.parent.mkdir(parents=True, exist_ok=True)
+    if trained.exemplars is not None:
+        trained.exemplars.save(exemplars_file(output))
+    else:
+        exemplars_file(output).unlink(missing_ok=True)
+    write_whole(output, trained.onnx)
+
+
+def kept_classifier(
+    classes: Classes,
+    negatives: "Sequence[CompiledModel]",
+    settings: "TrainingSettings",
+    progress: Progress,
+    cache: Path | None = None,
+) -> "Classifier":
+    """The classifier of these models and settings: of an earlier run, or trained now and kept."""
+    from shapewright import __version__
+    from shapewright.classification import load_backbone, load_classifier
+    from shapewright.errors import ClassifierError
+
+    digests = {name: [model.model.digest for model in models] for name, models in classes.items()}
+    others = [model.model.digest for model in negatives]
+    what = [__version__, digests, others, settings.to_dict(), load_backbone(settings.backbone).key]
+    name = hashlib.sha256(json.dumps(what).encode()).hexdigest()[:24]
+    path = cache_folder(cache, "learning") / "classifiers" / f"{name}.onnx"
+    if path.is_file():
+        try:
+            return load_classifier(path)
+        except ClassifierError:
+            pass  # of an older version, or damaged: made anew
+    save_classifier(learn(classes, negatives, settings, progress, cache), path)
+    return load_classifier(path)

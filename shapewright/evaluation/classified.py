@@ -1,0 +1,181 @@
+"""What a classifier, and the baselines beside it, say about every mesh of a dataset."""
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from jaxtyping import Float
+
+from shapewright.classification.classifier import DEFAULT_VIEWS, Classification, Classifier
+from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor, panorama_distances
+from shapewright.errors import EvaluationError, MeshError
+from shapewright.evaluation.datasets import LabelledFile, Skipped, load_each
+from shapewright.mesh import TriangleMesh
+from shapewright.modeling import CompiledModel
+from shapewright.progress import NULL_PROGRESS, Progress
+
+OTHER: Final = "other"
+"""What the classes are called that the classifier does not know."""
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """What was said about one mesh; arrays are in the order of the classifier's class names.
+
+    Attributes:
+        item: the mesh.
+        label: its class if the classifier knows it, else :data:`OTHER`.
+        found: the classifier's answer, without its pictures.
+        scores: of the classes by all evidence.
+        picture_scores: of the classes by the pictures alone, where ``none`` has a share.
+        picture_probabilities: by the pictures alone, given that it is one of the classes.
+        base_distances: panorama distance to the base instances of each class: the smallest over its models.
+        baselines: probabilities of classes by other classifiers, by their names.
+        seconds: for reading apart: drawing, describing and comparing.
+    """
+
+    item: LabelledFile
+    label: str
+    found: "Found"
+    scores: Float[np.ndarray, " C"]
+    picture_scores: Float[np.ndarray, " C"]
+    picture_probabilities: Float[np.ndarray, " C"]
+    base_distances: Float[np.ndarray, " C"]
+    baselines: Mapping[str, Float[np.ndarray, " C"]]
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Found:
+    """The parts of a classification that an evaluation keeps."""
+
+    class_name: str
+    answer: str
+    known: float | None
+    probability: float
+
+    @classmethod
+    def of(cls, answer: Classification) -> "Found":
+        """Take them out."""
+        return cls(answer.class_name, answer.answer, answer.known, answer.probabilities[answer.class_name])
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedDataset:
+    """All meshes that could be read.
+
+    Attributes:
+        class_names: of the classifier.
+        judged: a row a mesh.
+        skipped: meshes without a usable surface.
+    """
+
+    class_names: tuple[str, ...]
+    judged: tuple[Judged, ...]
+    skipped: tuple[Skipped, ...]
+
+
+def judge_dataset(
+    items: Sequence[LabelledFile],
+    classifier: Classifier,
+    bases: Mapping[str, Sequence[CompiledModel]],
+    *,
+    baselines: Mapping[str, Classifier] | None = None,
+    views: int = DEFAULT_VIEWS,
+    seed: int = 0,
+    jobs: int = 1,
+    progress: Progress = NULL_PROGRESS,
+) -> JudgedDataset:
+    """Classify every mesh, once for all figures.
+
+    Args:
+        items: the meshes; classes that the classifier does not know count as :data:`OTHER`.
+        classifier: what is measured.
+        bases: models whose base instances stand for each class, as the paper compares.
+        baselines: other classifiers of the same classes that look at pictures of their own.
+        views: pictures of each mesh.
+        seed: of the views.
+        jobs: meshes that are read at once.
+        progress: told of every mesh; may cancel.
+
+    Raises:
+        EvaluationError: no mesh could be read, or a baseline knows other classes.
+        RenderingError: no headless OpenGL.
+    """
+    others = dict(baselines or {})
+    for name, other in others.items():
+        if other.class_names != classifier.class_names:
+            raise EvaluationError("a baseline knows other classes", where=name)
+    base_descriptors = {
+        name: np.stack([_base_descriptor(model) for model in bases[name]]) for name in classifier.class_names
+    }
+    judged: list[Judged] = []
+    skipped: list[Skipped] = []
+    for number, (item, mesh) in enumerate(_ahead(load_each(items, jobs=jobs))):
+        progress.report(number / len(items), f"meshes: {number} of {len(items)}")
+        if isinstance(mesh, Skipped):
+            skipped.append(mesh)
+            continue
+        try:
+            judged.append(_judge(item, mesh, classifier, base_descriptors, others, views, seed))
+        except MeshError as error:
+            skipped.append(Skipped(item.file, error.message))
+    if not judged:
+        raise EvaluationError("there is no mesh to classify", where=skipped[0].file if skipped else None)
+    return JudgedDataset(classifier.class_names, tuple(judged), tuple(skipped))
+
+
+def _judge(
+    item: LabelledFile,
+    mesh: TriangleMesh,
+    classifier: Classifier,
+    bases: Mapping[str, Float[np.ndarray, "K D"]],
+    others: Mapping[str, Classifier],
+    views: int,
+    seed: int,
+) -> Judged:
+    names = classifier.class_names
+    started_s = time.perf_counter()
+    found = classifier.classify(mesh, views=views, rng=np.random.default_rng(seed))
+    seconds = time.perf_counter() - started_s
+    descriptor = found.descriptor or panorama_descriptor(mesh.vertices, mesh.faces)
+
+    def row(values: Mapping[str, float]) -> Float[np.ndarray, " C"]:
+        return np.array([values[name] for name in names])
+
+    said = {
+        name: other.classify(mesh, views=views, rng=np.random.default_rng(seed)).picture_probabilities
+        for name, other in others.items()
+    }
+    return Judged(
+        item=item,
+        label=item.class_name if item.class_name in names else OTHER,
+        found=Found.of(found),
+        scores=row(found.scores),
+        picture_scores=row(found.picture_scores),
+        picture_probabilities=row(found.picture_probabilities),
+        base_distances=np.array([panorama_distances(descriptor, bases[name]).min() for name in names]),
+        baselines={name: row(probabilities) for name, probabilities in said.items()},
+        seconds=seconds,
+    )
+
+
+def _base_descriptor(model: CompiledModel) -> Float[np.ndarray, " D"]:
+    mesh = model.instance(model.base_values())
+    descriptor: PanoramaDescriptor = panorama_descriptor(mesh.vertices, mesh.faces)
+    return descriptor.to_array()
+
+
+_Loaded = tuple[LabelledFile, TriangleMesh | Skipped]
+
+
+def _ahead(loaded: Iterator[_Loaded]) -> Iterator[_Loaded]:
+    """The same, with the next mesh being read while the caller works on one."""
+    with ThreadPoolExecutor(1) as pool:
+        coming = pool.submit(next, loaded, None)
+        while (one := coming.result()) is not None:
+            coming = pool.submit(next, loaded, None)
+            yield one
