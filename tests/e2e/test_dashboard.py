@@ -87,7 +87,7 @@ def _stool() -> ProceduralModel:
 
 def _train(client: Client, model_ids: list[str]) -> None:
     """Train a classifier that is small but real."""
-    settings = {"variations": 10, "images_per_variation": 2, "epochs": 20}
+    settings = {"variations": 10, "images_per_variation": 2, "negatives": 10, "epochs": 20}
     accepted = client.post("/v1/classifiers", {"name": "test", "model_ids": model_ids, "settings": settings})
     client.follow(accepted["job"])
 
