@@ -13,7 +13,7 @@ import typer
 from cli.console import AsJson, print_json, shown_progress, stderr, stdout
 from cli.report import parameter_table, probability_table
 from cli.sources import read_object
-from models_store.library.shipped import list_classes, list_shipped
+from models_store.library.shipped import list_classes, list_further_classes, list_shipped
 from shapewright.errors import ModelError, ShapewrightError
 
 if TYPE_CHECKING:
@@ -44,7 +44,11 @@ def demo(
     ] = None,
     classes: Annotated[
         list[str] | None,
-        typer.Option("--class", help="Learn this class only; repeatable (default: all that ship).", show_default=False),
+        typer.Option(
+            "--class",
+            help="Learn this class only; repeatable (default: all that ship but the further objects).",
+            show_default=False,
+        ),
     ] = None,
     variations: Annotated[int, typer.Option(min=1, help="Random variations of each class to learn from.")] = 60,
     images: Annotated[int, typer.Option(min=1, help="Images of each variation.")] = 5,
@@ -59,8 +63,9 @@ def demo(
     """Show the whole path on one mesh: train, classify, estimate, and look at it in the dashboard.
 
     Starts the service and a worker, uploads the procedural models that ship, trains a classifier with pictures of
-    their random variations, uploads MESH, asks what it is and which parameters rebuild it. Everything goes through
-    the REST service, as it would from another machine. Exit status 0 only if every step succeeded.
+    their random variations (the further objects that ship stand for what is of none of the classes), uploads MESH,
+    asks what it is and which parameters rebuild it. Everything goes through the REST service, as it would from
+    another machine. Exit status 0 only if every step succeeded.
 
     Examples:
 
@@ -73,7 +78,7 @@ def demo(
     console = stderr() if as_json else stdout()
     names = _models_of(classes)
     query = SAMPLE if mesh is None else mesh
-    training = {"variations": variations, "images_per_variation": images, "seed": seed}
+    training = {"variations": variations, "images_per_variation": images, "negatives": variations, "seed": seed}
     finished = False
     try:
         _refuse_early(query)
@@ -88,7 +93,7 @@ def demo(
             service = stack.enter_context(local_service(folder, port=port, log=output / "service.log"))
             client = stack.enter_context(connected(service["url"], ready_within_s=READY_WITHIN_S))
             console.print(f"   {service['url']}, worker {service['worker_pid']}, log {output / 'service.log'}")
-            report = _walk(client, console, names, query, output, training, estimating)
+            report = _walk(client, console, names, _negatives_of(classes), query, output, training, estimating)
             report["dashboard_url"] = service["dashboard_url"]
             finished = True
             if as_json:
@@ -116,12 +121,22 @@ def _quick_settings(samples: int, seed: int) -> dict[str, Any]:
 
 
 def _models_of(classes: list[str] | None) -> list[str]:
-    """Return the names of the shipped models of some classes, or all; raises ModelError for one that does not ship."""
-    known = list_classes()
+    """Return the names of the shipped models of some classes; raises ModelError for one that does not ship.
+
+    Without classes, of all but the further objects.
+    """
+    known, further = list_classes(), list_further_classes()
     for name in classes or ():
         if name not in known:
             raise ModelError(f"no such class ships (these do: {', '.join(known)})", where=repr(name))
-    return [model for name in dict.fromkeys(classes or known) for model in known[name]]
+    chosen = classes or [name for name in known if name not in further]
+    return [model for name in dict.fromkeys(chosen) for model in known[name]]
+
+
+def _negatives_of(classes: list[str] | None) -> list[str]:
+    """Return the names of the models of the further objects that are none of the classes."""
+    known = list_classes()
+    return [model for name in list_further_classes() if name not in (classes or ()) for model in known[name]]
 
 
 def _refuse_early(query: Path) -> None:
@@ -145,6 +160,7 @@ def _walk(
     client: "Client",
     console: "Console",
     names: list[str],
+    negatives: list[str],
     query: Path,
     output: Path,
     training: dict[str, int],
@@ -153,9 +169,11 @@ def _walk(
     """Take the steps 2 to 5; return what they found."""
     _step(console, 2, "upload the procedural models")
     models = _upload_models(client, console, names)
+    others = _upload_models(client, console, negatives) if negatives else []
 
     _step(console, 3, "train a classifier with pictures of their variations")
-    classifier = _train(client, console, [model["id"] for model in models], training)
+    ids, other_ids = ([model["id"] for model in group] for group in (models, others))
+    classifier = _train(client, console, ids, other_ids, training)
 
     _step(console, 4, f"upload {query}, classify it and estimate its parameters")
     uploaded = client.upload("/v1/meshes", query)
@@ -170,7 +188,13 @@ def _walk(
         {"mesh_id": uploaded["id"], "classifier_id": classifier["id"], "views": VIEWS},
     )
     found = classification["result"]
-    console.print(f"   it is a [bold]{found['class_name']}[/] ({found['seconds']:.1f} s)")
+    if found["answer"] == found["class_name"]:
+        console.print(f"   it is a [bold]{found['class_name']}[/] ({found['seconds']:.1f} s)")
+    else:
+        nearest = f"nearest is [bold]{found['class_name']}[/]"
+        console.print(f"   it is [bold]{found['answer']}[/], {nearest} ({found['seconds']:.1f} s)")
+    if found["known"] is not None:
+        console.print(f"   it is of one of the classes with a probability of {found['known']:.1%}")
     estimation = _run(
         client,
         "estimating",
@@ -195,6 +219,8 @@ def _walk(
     return {
         "query": str(query),
         "class_name": found["class_name"],
+        "answer": found["answer"],
+        "known": found["known"],
         "probabilities": found["probabilities"],
         "classifier_metrics": classifier["metrics"],
         "model": model["name"],
@@ -221,14 +247,17 @@ def _upload_models(client: "Client", console: "Console", names: list[str]) -> li
     return models
 
 
-def _train(client: "Client", console: "Console", model_ids: list[str], settings: dict[str, int]) -> Any:
+def _train(
+    client: "Client", console: "Console", model_ids: list[str], negative_ids: list[str], settings: dict[str, int]
+) -> Any:
     for classifier in client.list_items("/v1/classifiers"):
         same = all(classifier["settings"].get(name) == value for name, value in settings.items())
-        if classifier["state"] == "succeeded" and same and set(classifier["model_ids"]) == set(model_ids):
+        same = same and set(classifier["model_ids"]) == set(model_ids)
+        if classifier["state"] == "succeeded" and same and set(classifier["negative_model_ids"]) == set(negative_ids):
             console.print("   the classifier of an earlier demo in this folder is used again")
             return classifier
     started_s = time.monotonic()
-    body = {"name": "demo", "model_ids": model_ids, "settings": settings}
+    body = {"name": "demo", "model_ids": model_ids, "negative_model_ids": negative_ids, "settings": settings}
     classifier = _run(client, "training", "/v1/classifiers", body)
     count = settings["variations"] * settings["images_per_variation"]
     seconds = time.monotonic() - started_s

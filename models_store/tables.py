@@ -165,7 +165,10 @@ class MeshRow(Base):
 
 
 class ClassifierRow(Base):
-    """A classifier: asked for with its job, complete once ``onnx_key`` is set."""
+    """A classifier: asked for with its job, complete once ``onnx_key`` is set.
+
+    ``negative_model_ids`` and ``exemplars_key`` are null in older rows, and where there is no such thing.
+    """
 
     __tablename__ = "classifiers"
     __table_args__ = (Index(None, "created_at", "id"),)
@@ -174,17 +177,19 @@ class ClassifierRow(Base):
     job_id: Mapped[str] = mapped_column(ForeignKey(JobRow.id), unique=True)
     name: Mapped[str | None] = mapped_column(Text)
     model_ids: Mapped[list[str]]
+    negative_model_ids: Mapped[list[str] | None]
     class_names: Mapped[list[str]]
     settings: Mapped[dict[str, Any]]
     metrics: Mapped[dict[str, Any] | None]
     onnx_key: Mapped[str | None] = mapped_column(Text)
+    exemplars_key: Mapped[str | None] = mapped_column(Text)
     seconds: Mapped[float | None]
     created_at: Mapped[datetime]
     job: Mapped[JobRow] = relationship(lazy="joined", innerjoin=True)
 
 
 class ClassificationRow(Base):
-    """What a mesh was taken for; ``result`` is set once."""
+    """What a mesh was taken for; ``result`` and ``pictures_key`` are set once."""
 
     __tablename__ = "classifications"
     __table_args__ = (Index(None, "created_at", "id"),)
@@ -195,6 +200,7 @@ class ClassificationRow(Base):
     classifier_id: Mapped[str] = mapped_column(ForeignKey(ClassifierRow.id), index=True)
     settings: Mapped[dict[str, Any]]
     result: Mapped[dict[str, Any] | None]
+    pictures_key: Mapped[str | None] = mapped_column(Text)
     created_at: Mapped[datetime]
     job: Mapped[JobRow] = relationship(lazy="joined", innerjoin=True)
 

@@ -63,9 +63,13 @@ def request_classification(
     return row
 
 
-def record_classification(session: Session, identifier: str, result: dict[str, Any]) -> None:
+def record_classification(
+    session: Session, identifier: str, result: dict[str, Any], *, pictures_key: str | None = None
+) -> None:
     """Write the answer; in the transaction that ends the job."""
-    get_classification(session, identifier).result = result
+    row = get_classification(session, identifier)
+    row.result = result
+    row.pictures_key = pictures_key
 
 
 def get_classification(session: Session, identifier: str) -> ClassificationRow:

@@ -21,6 +21,7 @@ def request_classifier(
     model_ids: Sequence[str],
     settings: dict[str, Any],
     *,
+    negative_model_ids: Sequence[str] = (),
     name: str | None = None,
     now: datetime,
     max_attempts: int = 3,
@@ -31,18 +32,29 @@ def request_classifier(
         session: a writing session.
         model_ids: the models; several may share a class. Repeated ids count once.
         settings: fields of :class:`shapewright.classification.TrainingSettings` that differ from the default.
+        negative_model_ids: models of things that are of none of the classes. Repeated ids count once.
         name: a name for people.
         now: the time, with a zone.
         max_attempts: of the job.
 
     Raises:
         NotFoundError: a model is not there.
-        StoreError: the models are of fewer than two classes, so there is nothing to tell apart.
+        StoreError: the models are of fewer than two classes, so there is nothing to tell apart; a negative model is
+            of one of them.
     """
     unique_ids = list(dict.fromkeys(model_ids))
     class_names = sorted({get_model(session, model_id).class_name for model_id in unique_ids})
     if len(class_names) < 2:
         raise StoreError("a classifier needs models of at least two classes", where="model_ids")
+    negative_ids = list(dict.fromkeys(negative_model_ids))
+    for model_id in negative_ids:
+        class_name = get_model(session, model_id).class_name
+        if class_name in class_names:
+            place = list(negative_model_ids).index(model_id)
+            raise StoreError(
+                f"the model is of the class {class_name!r}, which the classifier learns",
+                where=f"negative_model_ids[{place}]",
+            )
     identifier = new_id()
     payload = {"classifier_id": identifier}
     job = create_job(session, JobKind.TRAIN_CLASSIFIER, identifier, payload, now=now, max_attempts=max_attempts)
@@ -51,6 +63,7 @@ def request_classifier(
         job=job,
         name=None if name is None else storable(name, limit=200),
         model_ids=unique_ids,
+        negative_model_ids=negative_ids,
         class_names=class_names,
         settings=settings,
         created_at=now,
@@ -68,10 +81,12 @@ def record_classifier(
     class_names: Sequence[str],
     metrics: dict[str, Any],
     seconds: float,
+    exemplars_key: str | None = None,
 ) -> None:
     """Write the outcome of a training; in the transaction that ends the job."""
     row = get_classifier(session, identifier)
     row.onnx_key = onnx_key
+    row.exemplars_key = exemplars_key
     row.class_names = list(class_names)
     row.metrics = metrics
     row.seconds = seconds

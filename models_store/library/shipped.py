@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from shapewright.modeling import ProceduralModel
 
 DOCUMENT = "model.json"
+ANNOTATIONS = "annotations.json"
 THUMBNAIL = "thumbnail.png"
 
 
@@ -26,6 +27,15 @@ def list_classes() -> dict[str, list[str]]:
     for name, document in list_shipped().items():
         by_class.setdefault(str(json.loads(document.read_bytes())["class"]), []).append(name)
     return by_class
+
+
+def list_further_classes() -> list[str]:
+    """Return the classes of the paper's eight further objects: those whose models have annotations."""
+    return [
+        class_name
+        for class_name, names in list_classes().items()
+        if any((_folder() / name / ANNOTATIONS).is_file() for name in names)
+    ]
 
 
 def load_shipped(name: str) -> "ProceduralModel":

@@ -2,13 +2,14 @@
 
 from typing import Any
 
-from fastapi import APIRouter, BackgroundTasks, Depends, Response
+from fastapi import APIRouter, BackgroundTasks, Depends, Request, Response
 
 from models_store import catalog
 from models_store.errors import NotFoundError
+from service.conditional import immutable_response
 from service.dependencies import CursorQuery, IdPath, LimitQuery, ServicesDep, now, require_json
-from service.errors import reference_error
-from service.routes import problems
+from service.errors import Problem, ProblemError, reference_error
+from service.routes import NOT_MODIFIED, binary, problems
 from service.schemas.classifications import ClassificationIn, ClassificationOut, ClassificationPageOut
 from service.schemas.jobs import AcceptedOut
 
@@ -58,3 +59,25 @@ def get_classification(services: ServicesDep, id: IdPath) -> Any:  # noqa: A002 
     """Look at a classification."""
     with services.database.reading() as session:
         return ClassificationOut.from_row(catalog.get_classification(session, id))
+
+
+@router.get(
+    "/{id}/pictures",
+    response_class=Response,
+    responses={
+        **binary("image/png", "The pictures that were looked at, beside and below each other."),
+        **NOT_MODIFIED,
+        **problems(404, 422),
+    },
+)
+def get_classification_pictures(request: Request, services: ServicesDep, id: IdPath) -> Response:  # noqa: A002
+    """What the classifier saw of the mesh; 404 until there is an answer."""
+    with services.database.reading() as session:
+        row = catalog.get_classification(session, id)
+    key = row.pictures_key
+    if key is None:
+        state = row.job.state.value
+        raise ProblemError(
+            Problem(404, "not-ready", "It is not ready yet", f"there are no pictures: this classification is {state}")
+        )
+    return immutable_response(request, f"{id}-pictures", "image/png", lambda: services.artifacts.get(key))

@@ -32,13 +32,15 @@ def create_classifier(services: ServicesDep, response: Response, after: Backgrou
                 session,
                 body.model_ids,
                 settings,
+                negative_model_ids=body.negative_model_ids,
                 name=body.name,
                 now=now(),
                 max_attempts=services.settings.max_attempts,
             )
     except NotFoundError as error:
-        index = body.model_ids.index(error.identifier)
-        raise reference_error(error, f"model_ids[{index}]") from None
+        name = "model_ids" if error.identifier in body.model_ids else "negative_model_ids"
+        index = getattr(body, name).index(error.identifier)
+        raise reference_error(error, f"{name}[{index}]") from None
     after.add_task(services.announce, row.job)
     response.headers["Location"] = f"/v1/jobs/{row.job_id}"
     return AcceptedOut.from_row(row.job)
@@ -82,4 +84,29 @@ def get_classifier_onnx(request: Request, services: ServicesDep, id: IdPath) -> 
         request, f"{id}-onnx", "application/octet-stream", lambda: services.artifacts.get(key)
     )
     response.headers["Content-Disposition"] = f'attachment; filename="classifier-{id[:12]}.onnx"'
+    return response
+
+
+@router.get(
+    "/{id}/exemplars",
+    response_class=Response,
+    responses={
+        **binary("application/octet-stream", "The exemplars (.npz); they go with the ONNX file."),
+        **NOT_MODIFIED,
+        **problems(404, 422),
+    },
+)
+def get_classifier_exemplars(request: Request, services: ServicesDep, id: IdPath) -> Response:  # noqa: A002
+    """The geometry of the variations that the classifier learned from; 404 until there is one."""
+    with services.database.reading() as session:
+        row = catalog.get_classifier(session, id)
+    key = row.exemplars_key
+    if key is None:
+        state = row.job.state.value
+        detail = "it has none" if row.onnx_key else f"the training of this classifier is {state}"
+        raise ProblemError(Problem(404, "not-ready", "It is not ready yet", detail))
+    response = immutable_response(
+        request, f"{id}-exemplars", "application/octet-stream", lambda: services.artifacts.get(key)
+    )
+    response.headers["Content-Disposition"] = f'attachment; filename="classifier-{id[:12]}.exemplars.npz"'
     return response

@@ -25,11 +25,33 @@ class ClassProbabilityOut(OutBody):
     probability: float
 
 
-class ClassificationResultOut(OutBody):
-    """The answer."""
+class ClassDistanceOut(OutBody):
+    """How near a mesh comes to one class."""
 
     class_name: str
-    probabilities: list[ClassProbabilityOut] = Field(description="Most probable class first.")
+    distance: float
+
+
+class ClassificationResultOut(OutBody):
+    """The answer; what older ones lack is null."""
+
+    class_name: str = Field(description="The most probable class, also where the mesh may be of none.")
+    answer: str | None = Field(default=None, description="The class, or `unknown`.")
+    known: float | None = Field(
+        default=None,
+        description="Probability that the mesh is of one of the classes at all; null if the classifier has not "
+        "learned what is unknown.",
+    )
+    probabilities: list[ClassProbabilityOut] = Field(
+        description="By all evidence, given that it is one of them; most probable class first."
+    )
+    picture_probabilities: list[ClassProbabilityOut] | None = Field(
+        default=None, description="By the pictures alone; most probable class first."
+    )
+    distances: list[ClassDistanceOut] | None = Field(
+        default=None,
+        description="Panorama distance of the nearest exemplar of each class, nearest first; null without exemplars.",
+    )
     per_view: list[list[float]] = Field(
         description="A row a view; columns in the order of the classifier's `class_names`."
     )
@@ -46,6 +68,7 @@ class ClassificationOut(OutBody):
     views: int
     seed: int
     result: ClassificationResultOut | None
+    pictures_url: str | None = Field(description="The pictures that were looked at, as one PNG file; null until then.")
     job_id: str
     created_at: Moment
 
@@ -61,6 +84,7 @@ class ClassificationOut(OutBody):
             views=row.settings["views"],
             seed=row.settings["seed"],
             result=result,
+            pictures_url=f"/v1/classifications/{row.id}/pictures" if row.pictures_key else None,
             job_id=row.job_id,
             created_at=row.created_at,
         )

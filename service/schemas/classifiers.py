@@ -23,6 +23,15 @@ class TrainingSettingsIn(InBody):
     scale_range: tuple[PositiveFloat, PositiveFloat] | None = Field(
         default=None, description="Random scales of the object in its pictures: smallest and largest."
     )
+    negatives: Annotated[int, Field(ge=0, le=100_000)] | None = Field(
+        default=None,
+        description="Objects that are of no class, of each kind: variations of the models in `negative_model_ids` "
+        "together, and random assemblies. 0: what is unknown is not learned.",
+    )
+    exemplars: bool | None = Field(
+        default=None, description="Whether the geometry of the variations is kept, as evidence beside the pictures."
+    )
+    vary: bool | None = Field(default=None, description="false: learn from base models alone.")
     held_out: Annotated[float, Field(gt=0, lt=1)] | None = Field(
         default=None, description="Share of the variations that measure the accuracy."
     )
@@ -35,7 +44,14 @@ class TrainingSettingsIn(InBody):
     batch_size: Annotated[int, Field(ge=1, le=65_536)] | None = None
     seed: Seed | None = None
     backbone: Annotated[str, Field(max_length=100)] | None = None
-    style: Literal["edges", "shaded"] | None = Field(default=None, description="Look of the pictures.")
+    style: Literal["edges", "shaded", "lambert", "depth", "normals", "fused"] | None = Field(
+        default=None, description="Look of the pictures."
+    )
+    framing: Literal["paper", "sphere"] | None = Field(
+        default=None,
+        description="How an object is put into its picture: by the mean and range of its vertices (paper), or by its "
+        "bounding box and farthest point.",
+    )
     window: Annotated[float, Field(gt=0)] | None = Field(
         default=None, description="Half the side of a picture, in units of the scaled object."
     )
@@ -64,21 +80,30 @@ class ClassifierIn(InBody):
     model_ids: Annotated[list[Identifier], Field(min_length=1, max_length=10_000)] = Field(
         description="Models to learn from; those with one `class_name` make one class."
     )
+    negative_model_ids: Annotated[list[Identifier], Field(max_length=10_000)] = Field(
+        default_factory=list,
+        description="Models of things that are of none of the classes, to learn what is unknown; random assemblies "
+        "are learned from in any case.",
+    )
     settings: TrainingSettingsIn = Field(default_factory=TrainingSettingsIn)
 
 
 class ClassifierOut(OutBody):
-    """A classifier: one ONNX file that takes images and knows its classes."""
+    """A classifier: one ONNX file that takes images and knows its classes, and exemplars of their geometry."""
 
     id: str
     name: str | None
     state: JobState
     class_names: list[str]
     model_ids: list[str]
+    negative_model_ids: list[str]
     settings: dict[str, Any]
     metrics: dict[str, Any] | None
     job_id: str
     onnx_url: str | None = Field(description="The ONNX file; null until the training has succeeded.")
+    exemplars_url: str | None = Field(
+        description="The geometry of the variations (.npz); null until the training has succeeded, and without any."
+    )
     seconds: float | None = Field(description="How long the training took.")
     created_at: Moment
 
@@ -91,10 +116,12 @@ class ClassifierOut(OutBody):
             state=row.job.state,
             class_names=row.class_names,
             model_ids=row.model_ids,
+            negative_model_ids=row.negative_model_ids or [],
             settings=row.settings,
             metrics=row.metrics,
             job_id=row.job_id,
             onnx_url=f"/v1/classifiers/{row.id}/onnx" if row.onnx_key else None,
+            exemplars_url=f"/v1/classifiers/{row.id}/exemplars" if row.exemplars_key else None,
             seconds=row.seconds,
             created_at=row.created_at,
         )

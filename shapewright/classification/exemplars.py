@@ -111,7 +111,7 @@ class Exemplars:
             "seed": self.seed,
             "subdivision_steps": self.subdivision_steps,
         }
-        arrays = {
+        arrays: dict[str, np.ndarray] = {
             "classes": self.classes.astype(np.int32),
             "models": self.models.astype(np.int32),
             "numbers": self.numbers.astype(np.int32),

@@ -87,7 +87,7 @@ def _stool() -> ProceduralModel:
 
 def _train(client: Client, model_ids: list[str]) -> None:
     """Train a classifier that is small but real."""
-    settings = {"variations": 10, "images_per_variation": 2, "epochs": 20}
+    settings = {"variations": 10, "images_per_variation": 2, "negatives": 10, "epochs": 20}
     accepted = client.post("/v1/classifiers", {"name": "test", "model_ids": model_ids, "settings": settings})
     client.follow(accepted["job"])
 
@@ -318,6 +318,12 @@ def test_from_an_unknown_mesh_to_its_parameters(new_page: Callable[..., Page], l
     probabilities = page.get_by_test_id("probabilities")
     expect(probabilities).to_be_visible(timeout=JOB_TIMEOUT_MS)
     expect(probabilities.get_by_role("listitem").first).to_contain_text("Lamp")
+    expect(page.get_by_test_id("answer")).to_contain_text("Lamp")  # as the class, or as the nearest one
+    page.get_by_text("Pictures that were looked at").click()
+    pictures = page.get_by_role("img", name="The mesh as the classifier saw it")
+    expect(pictures).to_be_visible()
+    expect(pictures).to_have_js_property("complete", True)
+    assert pictures.evaluate("image => image.naturalWidth") >= 224
     expect(page.get_by_label("Model", exact=True).locator("option:checked")).to_have_text("Lamp (class found)")
 
     page.get_by_label("Samples").fill("60")

@@ -38,6 +38,8 @@ def test_the_demo_once_on_its_sample(repository: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr + (log.read_text()[-3000:] if log.exists() else "")
     report = json.loads(done.stdout)
     assert report["class_name"] == "glass_with_stem"
+    assert report["answer"] in ("glass_with_stem", "unknown")
+    assert 0 <= report["known"] <= 1
     assert report["model"].startswith("glass_with_stem")
     assert report["layer"] in (1, 2, 3)
     assert all(p["minimum"] <= p["value"] <= p["maximum"] for p in report["parameters"] if p["active"])

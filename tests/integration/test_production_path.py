@@ -21,7 +21,7 @@ from shapewright.mesh_file import parse_mesh
 if TYPE_CHECKING:
     from shapewright.modeling import ProceduralModel
 
-TRAINING = {"variations": 12, "images_per_variation": 4, "seed": 1}
+TRAINING = {"variations": 12, "images_per_variation": 4, "negatives": 12, "seed": 1}
 ESTIMATING = {
     "samples": 40,
     "surface_points": 300,

@@ -1,19 +1,27 @@
 """The tasks themselves, run in this process: what they keep, what they reuse, what they say when it fails."""
 
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 from worker_support import QUICK, Site, brick, now, rod
 
 from models_store import catalog
 from models_store.artifacts import ArtifactStore
 from models_store.errors import ArtifactError
-from models_store.jobs import JobState
+from models_store.jobs import JobState, request_cancel
+from models_store.tables import ClassifierRow
+from shapewright.classification.exemplars import Exemplars
 from shapewright.estimation import EstimationSettings, PanoramaBank, estimate
 from shapewright.mesh_file import parse_mesh
+from shapewright.modeling import ProceduralModel, Recorder
+from workers.array_store import ArtifactArrays
 from workers.runner import Runner
 from workers.settings import WorkerSettings
 from workers.stopping import StopNotice
@@ -27,8 +35,12 @@ def site(tmp_path: Path) -> Iterator[Site]:
 
 
 def run(site: Site, job_id: str, artifacts: ArtifactStore | None = None) -> None:
-    settings = WorkerSettings(data_dir=site.settings.data_dir)
+    settings = WorkerSettings(data_dir=site.settings.data_dir, cancel_check_s=0.1, progress_interval_s=0.1)
     Runner(settings, StopNotice(), database=site.database, artifacts=artifacts or site.artifacts).run(job_id)
+
+
+TRAINING = {"variations": 8, "images_per_variation": 4, "image_size": 64, "negatives": 4, "subdivision_steps": 1}
+"""Settings of a training that takes seconds."""
 
 
 def bank_file(site: Site) -> Path:
@@ -118,10 +130,9 @@ def test_no_room_for_the_result_is_said_and_leaves_no_result(site: Site) -> None
 
 
 def test_a_classifier_is_trained_and_tells_a_brick_from_a_rod(site: Site) -> None:
-    models = [site.add_model(brick()), site.add_model(rod())]
-    settings = {"variations": 8, "images_per_variation": 4, "scale_range": [0.9, 1.4], "subdivision_steps": 1}
+    models, other = [site.add_model(brick()), site.add_model(rod())], site.add_model(slab())
     with site.database.writing() as session:
-        classifier = catalog.request_classifier(session, models, settings, now=now())
+        classifier = catalog.request_classifier(session, models, TRAINING, negative_model_ids=[other], now=now())
     run(site, classifier.job_id)
     assert site.job(classifier.job_id).state is JobState.SUCCEEDED, site.job(classifier.job_id).error_detail
     for model in (brick(), rod()):
@@ -137,12 +148,150 @@ def test_a_classifier_is_trained_and_tells_a_brick_from_a_rod(site: Site) -> Non
             row = catalog.get_classification(session, row.id)
         assert row.job.state is JobState.SUCCEEDED, row.job.error_detail
         assert row.result["class_name"] == model.class_name
-        ranked = [entry["probability"] for entry in row.result["probabilities"]]
-        assert ranked == sorted(ranked, reverse=True)
-        assert sum(ranked) == pytest.approx(1, abs=1e-4)
+        for name in ("probabilities", "picture_probabilities"):
+            ranked = [entry["probability"] for entry in row.result[name]]
+            assert ranked == sorted(ranked, reverse=True)
+            assert sum(ranked) == pytest.approx(1, abs=1e-4)
+        assert 0 < row.result["known"] < 1
+        assert row.result["answer"] == (model.class_name if row.result["known"] >= 0.5 else "unknown")
+        nearest, farther = row.result["distances"]
+        assert nearest["class_name"] == model.class_name
+        assert nearest["distance"] < farther["distance"]
+        with Image.open(BytesIO(site.artifacts.get(row.pictures_key))) as picture:
+            assert (picture.format, picture.size) == ("PNG", (4 * 64, 64))
         assert np.asarray(row.result["per_view"]).shape == (4, 2)
     with site.database.reading() as session:
         trained = catalog.get_classifier(session, classifier.id)
     assert trained.class_names == ["brick", "rod"]
     assert trained.metrics
     assert len(site.artifacts.get(trained.onnx_key)) > 1_000_000
+    exemplars = Exemplars.load(site.artifacts.local_copy(trained.exemplars_key, Path(site.settings.data_dir)))
+    assert (exemplars.class_names, len(exemplars)) == (("brick", "rod"), 2 * TRAINING["variations"])
+    assert keys_of(site, "features", slab())
+
+
+def test_a_classifier_without_exemplars_looks_at_pictures_alone(site: Site) -> None:
+    classifier = queue_training(site, [brick(), rod()], exemplars=False, negatives=0)
+    succeed(site, classifier.job_id, site.artifacts)
+    query = rod().compile().instance(np.array([0.8]))
+    stored, _ = catalog.store_mesh(
+        site.database, site.artifacts, query.to_bytes("ply"), file_name="q.ply", file_type="ply", mesh=query, now=now()
+    )
+    with site.database.writing() as session:
+        row = catalog.request_classification(session, stored.id, None, {"views": 7}, now=now())
+    succeed(site, row.job_id, Full(site.artifacts, "classifications/"))  # the pictures find no room
+    with site.database.reading() as session:
+        assert catalog.get_classifier(session, classifier.id).exemplars_key is None
+        row = catalog.get_classification(session, row.id)
+    assert (row.result["known"], row.result["distances"], row.pictures_key) == (None, None, None)
+    assert row.result["answer"] == row.result["class_name"]
+
+
+def keys_of(site: Site, kind: str, model: ProceduralModel) -> set[str]:
+    folder = Path(site.settings.data_dir) / "artifacts"
+    found = (path for path in (folder / kind).rglob("*.npy") if path.parent.name == model.digest[:32])
+    return {path.relative_to(folder).as_posix() for path in found}
+
+
+def slab() -> ProceduralModel:
+    """A flat box of a class of its own."""
+    recorder = Recorder("slab", "slab")
+    box = recorder.box(1.5, 1.5, 0.1)
+    recorder.extrude(box.top, 0.1, length="thickness")
+    recorder.parameter("thickness", "thickness", 0.5, 2.0)
+    return recorder.build()
+
+
+class Watched(ArtifactStore):
+    """A store that notes what is put, and does something after each array."""
+
+    def __init__(self, real: ArtifactStore, after: Callable[[str], None] = lambda key: None) -> None:
+        super().__init__(real._store, real._folder)
+        self.arrays: list[str] = []
+        self._after = after
+
+    def put(self, key: str, data: bytes) -> None:
+        super().put(key, data)
+        if key.endswith(".npy"):
+            self.arrays.append(key)
+            self._after(key)
+
+    def models(self, kind: str) -> set[str]:
+        """The digests, as keys have them, whose arrays of a kind were put."""
+        return {key.split("/")[-2] for key in self.arrays if key.startswith(f"{kind}/")}
+
+
+def queue_training(site: Site, models: list[ProceduralModel], **settings: Any) -> ClassifierRow:
+    identifiers = [site.add_model(model) for model in models]
+    with site.database.writing() as session:
+        return catalog.request_classifier(session, identifiers, TRAINING | settings, now=now())
+
+
+def succeed(site: Site, job_id: str, artifacts: ArtifactStore) -> None:
+    run(site, job_id, artifacts)
+    assert site.job(job_id).state is JobState.SUCCEEDED, site.job(job_id).error_detail
+
+
+def test_a_training_with_one_class_more_computes_that_class_alone(site: Site) -> None:
+    first, same, more, other = (Watched(site.artifacts) for _ in range(4))
+    succeed(site, queue_training(site, [brick(), rod()], negatives=0).job_id, first)
+    known = {model.digest[:32] for model in (brick(), rod())}
+    assert first.models("features") == first.models("panoramas") == known
+    succeed(site, queue_training(site, [rod(), brick()], negatives=0, epochs=3).job_id, same)
+    assert same.arrays == []
+    succeed(site, queue_training(site, [brick(), slab(), rod()], negatives=0).job_id, more)
+    assert more.models("features") == more.models("panoramas") == {slab().digest[:32]}
+    succeed(site, queue_training(site, [brick(), rod()], negatives=0, style="depth").job_id, other)
+    assert (other.models("features"), other.models("panoramas")) == (known, set())
+
+
+def test_a_cancelled_training_goes_on_where_it_was(site: Site) -> None:
+    first = queue_training(site, [brick(), rod()])
+
+    def cancel(key: str) -> None:
+        if key.startswith("features/"):
+            with site.database.writing() as session:
+                request_cancel(session, first.job_id, now=now())
+            time.sleep(1.0)  # the heartbeat hears of it
+
+    stopped, rest = Watched(site.artifacts, cancel), Watched(site.artifacts)
+    run(site, first.job_id, stopped)
+    assert site.job(first.job_id).state is JobState.CANCELLED
+    assert stopped.models("features") == {brick().digest[:32]}
+    succeed(site, queue_training(site, [brick(), rod()]).job_id, rest)
+    assert stopped.arrays
+    assert not set(stopped.arrays) & set(rest.arrays)
+    assert rod().digest[:32] in rest.models("features")
+
+
+def test_a_damaged_array_is_computed_anew(site: Site) -> None:
+    first, second = Watched(site.artifacts), Watched(site.artifacts)
+    succeed(site, queue_training(site, [brick(), rod()]).job_id, first)
+    site.artifacts.put(first.arrays[0], b"damaged")
+    succeed(site, queue_training(site, [brick(), rod()]).job_id, second)
+    assert second.arrays == [first.arrays[0]]
+
+
+def test_no_room_for_the_arrays_does_not_harm_the_training(site: Site) -> None:
+    for prefix in ("features/", "panoramas/"):
+        succeed(site, queue_training(site, [brick(), rod()]).job_id, Full(site.artifacts, prefix))
+
+
+def test_arrays_of_a_remote_store_are_copied_once(tmp_path: Path) -> None:
+    remote = ArtifactStore.open("memory://")
+    arrays = ArtifactArrays(remote, tmp_path)
+    key = "features/some-backbone/0f/abc/0-0-2.npy"
+    assert arrays.get(key) is None
+    arrays.put(key, np.arange(6).reshape(2, 3))
+    kept = arrays.get(key)
+    assert isinstance(kept, np.memmap)
+    np.testing.assert_array_equal(kept, np.arange(6).reshape(2, 3))
+
+    (tmp_path / key).write_bytes(b"damaged")
+    assert arrays.get(key) is None
+    arrays.put(key, np.zeros(2))
+    np.testing.assert_array_equal(arrays.get(key), np.zeros(2))
+
+    blocked = tmp_path / "file"
+    blocked.write_bytes(b"")
+    np.testing.assert_array_equal(ArtifactArrays(remote, blocked).get(key), np.zeros(2))

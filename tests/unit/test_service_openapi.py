@@ -26,6 +26,7 @@ from shapewright.estimation import Distances, Estimation, EstimationSettings, Pa
 from shapewright.estimation.settings import EstimatorName
 from shapewright.mesh import TriangleMesh
 from shapewright.rendering import STYLES
+from shapewright.rendering.styles import FRAMINGS
 
 
 def test_the_published_descriptions_are_fresh() -> None:
@@ -47,6 +48,7 @@ def test_choices_are_those_of_the_library() -> None:
         }
 
     assert choices(TrainingSettingsIn, "style") == set(STYLES)
+    assert choices(TrainingSettingsIn, "framing") == set(FRAMINGS)
     assert choices(EstimationSettingsIn, "estimator") == set(get_args(EstimatorName))
 
 
@@ -54,6 +56,8 @@ def test_the_library_defaults_are_within_the_limits_of_the_service() -> None:
     training, estimation = TrainingSettings().to_dict(), EstimationSettings().to_dict()
     estimation.pop("alignment")
     assert TrainingSettingsIn(**training).checked()["variations"] == 1000
+    paper = TrainingSettings.paper().to_dict()
+    assert TrainingSettingsIn(**paper).checked() | {"scale_range": paper["scale_range"]} == paper
     assert EstimationSettingsIn(**estimation).checked()["samples"] == 10_000
 
 

@@ -28,14 +28,16 @@ def two_models(service: LiveService) -> list[str]:
     return [service.add_model(name)["id"] for name in ("box", "crate")]
 
 
-def train(service: LiveService) -> dict[str, Any]:
+def train(service: LiveService, *, exemplars_key: str | None = "classifiers/one.npz") -> dict[str, Any]:
     """Ask for a classifier and do the work."""
     accepted = service.client.post("/v1/classifiers", json={"name": "boxes", "model_ids": two_models(service)}).json()
     service.services.artifacts.put("classifiers/one.onnx", b"onnx")
+    service.services.artifacts.put("classifiers/one.npz", b"exemplars")
     record = partial(
         catalog.record_classifier,
         identifier=accepted["id"],
         onnx_key="classifiers/one.onnx",
+        exemplars_key=exemplars_key,
         class_names=["box", "crate"],
         metrics={"accuracy": 0.5},
         seconds=1.5,
@@ -57,7 +59,9 @@ def test_a_training_is_accepted_and_its_classifier_comes(service: LiveService) -
     assert waiting["state"] == "queued"
     assert waiting["settings"] == body["settings"]
     assert (waiting["name"], waiting["metrics"], waiting["onnx_url"]) == (None, None, None)
+    assert (waiting["negative_model_ids"], waiting["exemplars_url"]) == ([], None)
     problem(service.client.get(f"{accepted['url']}/onnx"), 404)
+    problem(service.client.get(f"{accepted['url']}/exemplars"), 404)
 
     ready = train(service)
     assert (ready["state"], ready["name"], ready["seconds"]) == ("succeeded", "boxes", 1.5)
@@ -70,6 +74,30 @@ def test_a_training_is_accepted_and_its_classifier_comes(service: LiveService) -
     assert [item["id"] for item in listed] == [ready["id"], accepted["id"]]
 
 
+def test_the_exemplars_of_a_classifier_are_a_file_of_their_own(service: LiveService) -> None:
+    ready = train(service)
+    exemplars = service.client.get(ready["exemplars_url"])
+    assert exemplars.content == b"exemplars"
+    assert exemplars.headers["content-disposition"].endswith('.exemplars.npz"')
+    again = service.client.get(ready["exemplars_url"], headers={"If-None-Match": exemplars.headers["etag"]})
+    assert again.status_code == 304
+    without = train(service, exemplars_key=None)
+    assert without["exemplars_url"] is None
+    problem(service.client.get(f"/v1/classifiers/{without['id']}/exemplars"), 404)
+    problem(service.client.get(f"/v1/classifiers/{'0' * 32}/exemplars"), 404)
+
+
+def test_what_is_of_no_class_is_learned_from_models_of_other_things(service: LiveService) -> None:
+    models, other = two_models(service), service.add_model("lamp")["id"]
+    url = "/v1/classifiers"
+    accepted = service.client.post(url, json={"model_ids": models, "negative_model_ids": [other, other]}).json()
+    assert service.client.get(accepted["url"]).json()["negative_model_ids"] == [other]
+    same_class = service.add_model("box", 2.0)["id"]
+    for negatives, index in (([models[0]], 0), ([other, same_class], 1), ([other, "0" * 64], 1)):
+        body = {"model_ids": models, "negative_model_ids": negatives}
+        problem(service.client.post(url, json=body), 422, f"negative_model_ids[{index}]")
+
+
 @pytest.mark.parametrize(
     ("body", "where"),
     [
@@ -80,6 +108,8 @@ def test_a_training_is_accepted_and_its_classifier_comes(service: LiveService) -
         ({"model_ids": ["BOX"], "settings": {"scale_range": [2.0, 1.0]}}, "settings.scale_range"),
         ({"model_ids": ["BOX"], "settings": {"backbone": "hand-made"}}, "settings.backbone"),
         ({"model_ids": ["BOX"], "settings": {"magic": 1}}, "settings.magic"),
+        ({"model_ids": ["BOX"], "settings": {"negatives": -1}}, "settings.negatives"),
+        ({"model_ids": ["BOX"], "settings": {"framing": "golden"}}, "settings.framing"),
         ({"model_ids": ["BOX", "0" * 64]}, "model_ids[1]"),
         ({"model_ids": ["BOX", "no id"]}, "model_ids[1]"),
         ({"model_ids": ["BOX"]}, "model_ids"),  # one class alone cannot be told apart
@@ -90,6 +120,21 @@ def test_a_training_that_makes_no_sense_is_refused(shared_service: LiveService, 
     body = {**body, **({"model_ids": [box if m == "BOX" else m for m in body["model_ids"]]} if body else {})}
     problem(shared_service.client.post("/v1/classifiers", json=body), 422, where)
     assert shared_service.client.get("/v1/classifiers").json()["items"] == []
+
+
+RESULT: dict[str, Any] = {
+    "class_name": "crate",
+    "answer": "unknown",
+    "known": 0.25,
+    "probabilities": [{"class_name": "crate", "probability": 0.75}, {"class_name": "box", "probability": 0.25}],
+    "picture_probabilities": [
+        {"class_name": "box", "probability": 0.5},
+        {"class_name": "crate", "probability": 0.5},
+    ],
+    "distances": [{"class_name": "crate", "distance": 0.2}, {"class_name": "box", "distance": 0.3}],
+    "per_view": [[0.2, 0.8], [0.3, 0.7]],
+    "seconds": 0.1,
+}
 
 
 def test_a_mesh_is_classified_by_the_newest_classifier(service: LiveService) -> None:
@@ -103,18 +148,39 @@ def test_a_mesh_is_classified_by_the_newest_classifier(service: LiveService) -> 
     waiting = service.client.get(accepted["url"]).json()
     assert (waiting["classifier_id"], waiting["result"]) == (classifier["id"], None)
     assert (waiting["views"], waiting["seed"]) == (2, 7)
-    result = {
-        "class_name": "crate",
-        "probabilities": [{"class_name": "crate", "probability": 0.75}, {"class_name": "box", "probability": 0.25}],
-        "per_view": [[0.2, 0.8], [0.3, 0.7]],
-        "seconds": 0.1,
-    }
+    problem(service.client.get(f"{accepted['url']}/pictures"), 404)
+    service.services.artifacts.put("classifications/one.png", b"png")
+    service.work(
+        accepted["job"]["id"],
+        partial(
+            catalog.record_classification,
+            identifier=accepted["id"],
+            result=RESULT,
+            pictures_key="classifications/one.png",
+        ),
+    )
+    done = service.client.get(accepted["url"]).json()
+    assert (done["state"], done["result"]) == ("succeeded", RESULT)
+    assert service.client.get(url).json()["items"] == [done]
+    pictures = service.client.get(done["pictures_url"])
+    assert (pictures.content, pictures.headers["content-type"]) == (b"png", "image/png")
+    again = service.client.get(done["pictures_url"], headers={"If-None-Match": pictures.headers["etag"]})
+    assert again.status_code == 304
+
+
+def test_an_answer_of_an_older_version_can_be_read(service: LiveService) -> None:
+    mesh = service.upload(tetrahedron()).json()["id"]
+    train(service)
+    accepted = service.client.post("/v1/classifications", json={"mesh_id": mesh}).json()
+    result = {name: RESULT[name] for name in ("class_name", "probabilities", "per_view", "seconds")}
     service.work(
         accepted["job"]["id"], partial(catalog.record_classification, identifier=accepted["id"], result=result)
     )
     done = service.client.get(accepted["url"]).json()
-    assert (done["state"], done["result"]) == ("succeeded", result)
-    assert service.client.get(url).json()["items"] == [done]
+    absent = dict.fromkeys(("answer", "known", "picture_probabilities", "distances"))
+    assert done["result"] == result | absent
+    assert done["pictures_url"] is None
+    problem(service.client.get(f"{accepted['url']}/pictures"), 404)
 
 
 def test_a_classifier_in_training_cannot_be_asked(service: LiveService) -> None:

@@ -1,6 +1,7 @@
 """The catalogue: the same content is the same thing, and results belong to the jobs that fill them in."""
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from threading import Barrier
 
@@ -124,6 +125,7 @@ def test_a_classifier_is_asked_for_trained_and_used(
     with database.writing() as session:
         row = catalog.request_classifier(session, [*models, models[0]], {"epochs": 2}, name="n\0", now=clock.now)
     assert (row.model_ids, row.class_names, row.name) == (models, ["brick", "rod"], "n")
+    assert (row.negative_model_ids, row.exemplars_key) == ([], None)
     assert (row.job.kind, row.job.state, row.job.result_id) == (JobKind.TRAIN_CLASSIFIER, JobState.QUEUED, row.id)
     with database.writing() as session, pytest.raises(NotReadyError, match="queued"):
         catalog.request_classification(session, mesh.id, row.id, {}, now=clock.now)
@@ -150,6 +152,21 @@ def test_one_class_is_nothing_to_tell_apart(database: Database, clock: FakeClock
         with database.writing() as session, pytest.raises(StoreError) as caught:
             catalog.request_classifier(session, model_ids, {}, now=clock.now)
         assert caught.value.where == "model_ids"
+
+
+def test_negative_models_are_of_no_learned_class(database: Database, clock: FakeClock) -> None:  # noqa: F811
+    models = [add_model(database, clock.now), add_model(database, clock.now, rod())]
+    other = add_model(database, clock.now, replace(rod(), class_name="pipe"))
+    bigger = add_model(database, clock.now, replace(rod(), name="bigger"))
+    with database.writing() as session:
+        row = catalog.request_classifier(session, models, {}, negative_model_ids=[other, other], now=clock.now)
+    assert row.negative_model_ids == [other]
+    for negative in (models[0], bigger):
+        with database.writing() as session, pytest.raises(StoreError, match="the classifier learns") as caught:
+            catalog.request_classifier(session, models, {}, negative_model_ids=[other, negative], now=clock.now)
+        assert caught.value.where == "negative_model_ids[1]"
+    with database.writing() as session, pytest.raises(NotFoundError):
+        catalog.request_classifier(session, models, {}, negative_model_ids=["0" * 64], now=clock.now)
 
 
 def test_requests_for_what_is_not_there_leave_nothing_behind(

@@ -1,17 +1,25 @@
 """Tell what an uploaded mesh is."""
 
 from functools import partial
+from io import BytesIO
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+import structlog
+from jaxtyping import UInt8
 
 from models_store import catalog
+from models_store.errors import ArtifactError
 from workers.context import JobContext, Outcome
 from workers.finite import finite
 
 if TYPE_CHECKING:
     from shapewright.classification import Classifier
 
+
+log = structlog.get_logger(__name__)
+
+_PICTURES_IN_A_ROW: Final = 5
 
 _kept: "Final[dict[str, Classifier]]" = {}
 """The classifier of the last job by its key, as most jobs ask the same one; keys never change their content."""
@@ -22,30 +30,68 @@ def classify(context: JobContext) -> Outcome:
     identifier = str(context.claim.payload["classification_id"])
     with context.database.reading() as session:
         row = catalog.get_classification(session, identifier)
-        onnx_key = catalog.get_classifier(session, row.classifier_id).onnx_key
+        trained = catalog.get_classifier(session, row.classifier_id)
     context.progress.report(0.0, "reading the mesh")
     mesh = context.load_query(row.mesh_id)
     context.progress.report(0.3, "reading the classifier")
-    classifier = _classifier(context, str(onnx_key))
+    classifier = _classifier(context, str(trained.onnx_key), trained.exemplars_key)
     context.progress.report(0.6, "looking at the mesh")
     rng = np.random.default_rng(row.settings.get("seed", 0))
     answer = classifier.classify(mesh, views=row.settings.get("views", 10), rng=rng)
-    ranked = sorted(answer.probabilities.items(), key=lambda pair: -pair[1])
     result = finite(
         {
             "class_name": answer.class_name,
-            "probabilities": [{"class_name": name, "probability": float(p)} for name, p in ranked],
+            "answer": answer.answer,
+            "known": answer.known,
+            "probabilities": _listed(answer.probabilities, "probability"),
+            "picture_probabilities": _listed(answer.picture_probabilities, "probability"),
+            "distances": None if answer.distances is None else _listed(answer.distances, "distance"),
             "per_view": np.asarray(answer.per_view).tolist(),
             "seconds": context.seconds,
         }
     )
-    return Outcome(partial(catalog.record_classification, identifier=identifier, result=result))
+    key = _keep_pictures(context, identifier, answer.images)
+    record = partial(catalog.record_classification, identifier=identifier, result=result, pictures_key=key)
+    return Outcome(record, () if key is None else (key,))
 
 
-def _classifier(context: JobContext, onnx_key: str) -> "Classifier":
+def _classifier(context: JobContext, onnx_key: str, exemplars_key: str | None) -> "Classifier":
     from shapewright.classification import Classifier
+    from shapewright.classification.exemplars import Exemplars
 
     if onnx_key not in _kept:
         _kept.clear()
-        _kept[onnx_key] = Classifier(context.artifacts.get(onnx_key))
+        exemplars = None
+        if exemplars_key is not None:
+            exemplars = Exemplars.load(context.artifacts.local_copy(exemplars_key, context.settings.data_dir / "cache"))
+        _kept[onnx_key] = Classifier(context.artifacts.get(onnx_key), exemplars=exemplars)
     return _kept[onnx_key]
+
+
+def _keep_pictures(context: JobContext, identifier: str, images: UInt8[np.ndarray, "N H W 3"]) -> str | None:
+    key = context.own_key(f"classifications/{identifier}", "png")
+    try:
+        context.artifacts.put(key, _png(images))
+    except ArtifactError as error:  # the answer itself needs no room
+        log.warning("pictures could not be kept", key=key, error=str(error))
+        return None
+    return key
+
+
+def _listed(values: dict[str, float], what: str) -> list[dict[str, str | float]]:
+    return [{"class_name": name, what: float(value)} for name, value in values.items()]
+
+
+def _png(images: UInt8[np.ndarray, "N H W 3"]) -> bytes:
+    """The pictures in rows of five, what is left of the last row in white."""
+    from PIL import Image
+
+    count, height, width, _ = images.shape
+    columns = min(count, _PICTURES_IN_A_ROW)
+    rows = -(-count // columns)
+    cells = np.full((rows * columns, height, width, 3), 255, dtype=np.uint8)
+    cells[:count] = images
+    sheet = cells.reshape(rows, columns, height, width, 3).transpose(0, 2, 1, 3, 4)
+    png = BytesIO()
+    Image.fromarray(sheet.reshape(rows * height, columns * width, 3)).save(png, format="PNG", optimize=True)
+    return png.getvalue()

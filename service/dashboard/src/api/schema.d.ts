@@ -238,6 +238,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/v1/classifiers/{id}/exemplars": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Classifier Exemplars
+         * @description The geometry of the variations that the classifier learned from; 404 until there is one.
+         */
+        get: operations["get_classifier_exemplars"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/v1/classifications": {
         parameters: {
             query?: never;
@@ -274,6 +294,26 @@ export interface paths {
          * @description Look at a classification.
          */
         get: operations["get_classification"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/classifications/{id}/pictures": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Classification Pictures
+         * @description What the classifier saw of the mesh; 404 until there is an answer.
+         */
+        get: operations["get_classification_pictures"];
         put?: never;
         post?: never;
         delete?: never;
@@ -513,6 +553,16 @@ export interface components {
             file: string;
         };
         /**
+         * ClassDistanceOut
+         * @description How near a mesh comes to one class.
+         */
+        ClassDistanceOut: {
+            /** Class Name */
+            class_name: string;
+            /** Distance */
+            distance: number;
+        };
+        /**
          * ClassOut
          * @description A class of objects: the set of models that share its name.
          */
@@ -589,6 +639,11 @@ export interface components {
             /** Seed */
             seed: number;
             result: components["schemas"]["ClassificationResultOut"] | null;
+            /**
+             * Pictures Url
+             * @description The pictures that were looked at, as one PNG file; null until then.
+             */
+            pictures_url: string | null;
             /** Job Id */
             job_id: string;
             /**
@@ -612,16 +667,39 @@ export interface components {
         };
         /**
          * ClassificationResultOut
-         * @description The answer.
+         * @description The answer; what older ones lack is null.
          */
         ClassificationResultOut: {
-            /** Class Name */
+            /**
+             * Class Name
+             * @description The most probable class, also where the mesh may be of none.
+             */
             class_name: string;
             /**
+             * Answer
+             * @description The class, or `unknown`.
+             */
+            answer: string | null;
+            /**
+             * Known
+             * @description Probability that the mesh is of one of the classes at all; null if the classifier has not learned what is unknown.
+             */
+            known: number | null;
+            /**
              * Probabilities
-             * @description Most probable class first.
+             * @description By all evidence, given that it is one of them; most probable class first.
              */
             probabilities: components["schemas"]["ClassProbabilityOut"][];
+            /**
+             * Picture Probabilities
+             * @description By the pictures alone; most probable class first.
+             */
+            picture_probabilities: components["schemas"]["ClassProbabilityOut"][] | null;
+            /**
+             * Distances
+             * @description Panorama distance of the nearest exemplar of each class, nearest first; null without exemplars.
+             */
+            distances: components["schemas"]["ClassDistanceOut"][] | null;
             /**
              * Per View
              * @description A row a view; columns in the order of the classifier's `class_names`.
@@ -642,11 +720,16 @@ export interface components {
              * @description Models to learn from; those with one `class_name` make one class.
              */
             model_ids: string[];
+            /**
+             * Negative Model Ids
+             * @description Models of things that are of none of the classes, to learn what is unknown; random assemblies are learned from in any case.
+             */
+            negative_model_ids?: string[];
             settings?: components["schemas"]["TrainingSettingsIn"];
         };
         /**
          * ClassifierOut
-         * @description A classifier: one ONNX file that takes images and knows its classes.
+         * @description A classifier: one ONNX file that takes images and knows its classes, and exemplars of their geometry.
          */
         ClassifierOut: {
             /** Id */
@@ -658,6 +741,8 @@ export interface components {
             class_names: string[];
             /** Model Ids */
             model_ids: string[];
+            /** Negative Model Ids */
+            negative_model_ids: string[];
             /** Settings */
             settings: {
                 [key: string]: unknown;
@@ -673,6 +758,11 @@ export interface components {
              * @description The ONNX file; null until the training has succeeded.
              */
             onnx_url: string | null;
+            /**
+             * Exemplars Url
+             * @description The geometry of the variations (.npz); null until the training has succeeded, and without any.
+             */
+            exemplars_url: string | null;
             /**
              * Seconds
              * @description How long the training took.
@@ -1548,6 +1638,21 @@ export interface components {
                 number
             ] | null;
             /**
+             * Negatives
+             * @description Objects that are of no class, of each kind: variations of the models in `negative_model_ids` together, and random assemblies. 0: what is unknown is not learned.
+             */
+            negatives?: number | null;
+            /**
+             * Exemplars
+             * @description Whether the geometry of the variations is kept, as evidence beside the pictures.
+             */
+            exemplars?: boolean | null;
+            /**
+             * Vary
+             * @description false: learn from base models alone.
+             */
+            vary?: boolean | null;
+            /**
              * Held Out
              * @description Share of the variations that measure the accuracy.
              */
@@ -1573,7 +1678,12 @@ export interface components {
              * Style
              * @description Look of the pictures.
              */
-            style?: ("edges" | "shaded") | null;
+            style?: ("edges" | "shaded" | "lambert" | "depth" | "normals" | "fused") | null;
+            /**
+             * Framing
+             * @description How an object is put into its picture: by the mean and range of its vertices (paper), or by its bounding box and farthest point.
+             */
+            framing?: ("paper" | "sphere") | null;
             /**
              * Window
              * @description Half the side of a picture, in units of the scaled object.
@@ -2280,6 +2390,53 @@ export interface operations {
             };
         };
     };
+    get_classifier_exemplars: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The exemplars (.npz); they go with the ONNX file. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/octet-stream": string;
+                };
+            };
+            /** @description Not modified. */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such thing. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
     list_classifications: {
         parameters: {
             query?: {
@@ -2411,6 +2568,53 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["ClassificationOut"];
                 };
+            };
+            /** @description There is no such thing. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    get_classification_pictures: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The pictures that were looked at, beside and below each other. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/png": string;
+                };
+            };
+            /** @description Not modified. */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description There is no such thing. */
             404: {

@@ -3,7 +3,8 @@ import { useState } from "react";
 import { useClassifications, useClassify } from "../api/queries";
 import type { Classification } from "../api/types";
 import { useJob } from "../hooks/useJob";
-import { duration, humanize, percent } from "../lib/format";
+import { count, duration, humanize, percent } from "../lib/format";
+import { verdictOf } from "../lib/verdict";
 import { ClassifierPicker } from "./ClassifierPicker";
 import { JobProgress } from "./JobProgress";
 import { Problem } from "./Problem";
@@ -65,14 +66,54 @@ export function ClassificationPanel({ meshId, classifierId, onClassifier }: Clas
       {classify.error && <Problem error={classify.error} onDismiss={() => classify.reset()} />}
       {newest && newest.state !== "succeeded" && <JobProgress live={live} label="Classifying" />}
       {newest?.state === "cancelled" && <p className="muted">The last classification was cancelled.</p>}
-      {newest?.result && <Probabilities result={newest.result} />}
+      {newest?.result && (
+        <>
+          <Verdict result={newest.result} />
+          <Probabilities result={newest.result} />
+        </>
+      )}
+      {newest?.result && newest.pictures_url && (
+        <Pictures key={newest.id} url={newest.pictures_url} views={newest.result.per_view.length} />
+      )}
     </section>
   );
 }
 
 const SHOWN_CLASSES = 6;
 
-function Probabilities({ result }: { result: NonNullable<Classification["result"]> }) {
+type Result = NonNullable<Classification["result"]>;
+
+function Verdict({ result }: { result: Result }) {
+  const verdict = verdictOf(result);
+  return (
+    <div className="answer" data-known={verdict.known} data-testid="answer">
+      <strong>{verdict.title}</strong>
+      {verdict.detail && <span>{verdict.detail}</span>}
+    </div>
+  );
+}
+
+/** What the classifier saw; fetched when it is opened. */
+function Pictures({ url, views }: { url: string; views: number }) {
+  const [open, setOpen] = useState(false);
+  const [failed, setFailed] = useState(false);
+  return (
+    <details className="pictures" onToggle={(event) => setOpen(event.currentTarget.open)}>
+      <summary>Pictures that were looked at</summary>
+      {open && !failed && (
+        <img
+          src={url}
+          alt={`The mesh as the classifier saw it, from ${count(views, "side")}`}
+          decoding="async"
+          onError={() => setFailed(true)}
+        />
+      )}
+      {failed && <p className="muted">The pictures cannot be loaded.</p>}
+    </details>
+  );
+}
+
+function Probabilities({ result }: { result: Result }) {
   const shown = result.probabilities.slice(0, SHOWN_CLASSES);
   const hidden = result.probabilities.length - shown.length;
   return (
