@@ -5,13 +5,14 @@ A key says everything that the array depends on, so a store never has to forget:
 
 import io
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
 from shapewright.whole_file import write_whole
 
 
+@runtime_checkable
 class ArrayStore(Protocol):
     """Keeps arrays under keys such as ``features/<what>/0-12.npy``; several processes may share one."""
 
