@@ -141,7 +141,7 @@ class MixedSource:
     @property
     def digest(self) -> str:
         """Changes with the models and the version of the mixing."""
-        return _digest_of(self.name, self.generators)
+        return _digest_of(f"{self.name} {negatives.MIXED_VERSION}", self.generators)
 
     def meshes(self, rng: np.random.Generator, count: int, steps: int) -> Iterator[TriangleMesh]:
         """Two halves each, of two random models."""
