@@ -1,6 +1,5 @@
 """Stores of arrays: what is put comes back, from files as a map; damage reads as missing."""
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -47,7 +46,7 @@ def test_damage_reads_as_missing(tmp_path: Path) -> None:
         path.write_bytes(damaged)
         assert store.get(KEY) is None
     np.savez(path.with_suffix(".npz"), a=ARRAY)
-    os.replace(path.with_suffix(".npz"), path)
+    path.with_suffix(".npz").replace(path)
     assert store.get(KEY) is None, "several arrays are none"
     np.save(path, np.array([{"an": "object"}]), allow_pickle=True)
     assert store.get(KEY) is None, "nothing is unpickled"
