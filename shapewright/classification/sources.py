@@ -48,7 +48,7 @@ class InstanceGenerator(Protocol):
 
 @runtime_checkable
 class Source(Protocol):
-    """Gives random meshes to learn from: the same ones for the same generator, and the first ones of a longer series."""
+    """Gives random meshes to learn from: the same for the same generator, and the first ones of a longer series."""
 
     @property
     def name(self) -> str:
