@@ -3,6 +3,7 @@
 import numpy as np
 
 from shapewright.classification import Classification
+from shapewright.classification.evidence import FLOOR
 from shapewright.mesh import TriangleMesh
 
 
@@ -20,10 +21,21 @@ class ExtentClassifier:
         self.asked += 1
         short, middle, long = np.sort(np.ptp(mesh.vertices, axis=0))
         slab = float((middle - short) / (long - short)) if long > short else 0.5
-        probabilities = {"slab": slab, "rod": 1.0 - slab}
+        probabilities = _highest_first({"slab": slab, "rod": 1.0 - slab})
+        scores = {name: float(np.log(share + FLOOR)) for name, share in probabilities.items()}
         return Classification(
-            class_name=max(probabilities, key=lambda name: probabilities[name]),
+            class_name=next(iter(probabilities)),
+            known=0.75,
             probabilities=probabilities,
+            picture_probabilities=probabilities,
+            scores=scores,
+            picture_scores=scores,
+            distances=None,
+            descriptor=None,
             per_view=np.tile(np.array([1.0 - slab, slab], dtype=np.float32), (views, 1)),
             images=np.zeros((views, 8, 8, 3), dtype=np.uint8),
         )
+
+
+def _highest_first(shares: dict[str, float]) -> dict[str, float]:
+    return dict(sorted(shares.items(), key=lambda entry: -entry[1]))

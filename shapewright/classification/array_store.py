@@ -65,7 +65,7 @@ def mapped_array(path: Path) -> np.ndarray | None:
     """An ``.npy`` file as a read-only map; ``None`` if there is none or it is damaged."""
     try:
         array: Any = np.load(path, mmap_mode="r", allow_pickle=False)
-    except (OSError, ValueError, EOFError):
+    except Exception:  # a broken header makes numpy raise almost anything, and all of it means damage
         return None
     return array if isinstance(array, np.ndarray) else None
 

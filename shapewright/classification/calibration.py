@@ -1,9 +1,9 @@
 """How sure a classifier may be: tried on models that it has not learned from (ours).
 
-Held-out variations of a model that was learned are far easier than real objects are. So the models are split into folds: a
-last layer learns without a fold's models and is tried on their variations, and on objects of no class that it did
-not learn from either. What it says there sets the temperature and the curve that tells known from unknown, and is the
-honest forecast among the figures of a training. Labels of real meshes have no part in it.
+Held-out variations of a model that was learned are far easier than real objects are. So the models are split into
+folds: a last layer learns without a fold's models and is tried on their variations, and on objects of no class that
+it did not learn from either. What it says there sets the temperature and the curve that tells known from unknown, and
+is the honest forecast among the figures of a training. Labels of real meshes have no part in it.
 """
 
 from collections.abc import Sequence

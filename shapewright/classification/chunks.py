@@ -71,9 +71,7 @@ def series_generators(seed: int, digest: str, number: int) -> tuple[np.random.Ge
 
 def chunks_of(source: Source, count: int) -> list[Chunk]:
     """Cut ``count`` meshes of a source into chunks."""
-    return [
-        Chunk(source, number, min(SERIES, count - start)) for number, start in enumerate(range(0, count, SERIES))
-    ]
+    return [Chunk(source, number, min(SERIES, count - start)) for number, start in enumerate(range(0, count, SERIES))]
 
 
 def features_key(chunk: Chunk, settings: TrainingSettings, backbone: Backbone) -> str:

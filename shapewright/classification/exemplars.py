@@ -4,7 +4,6 @@ They are evidence beside the pictures: how near does a mesh come to some variati
 geometry that pictures blur, and where a match is found its parameter values are known, too.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -49,7 +48,9 @@ class Exemplars:
     def __post_init__(self) -> None:
         lengths = {len(self.classes), len(self.models), len(self.numbers), len(self.descriptors)}
         if len(lengths) != 1 or set(np.unique(self.classes)) != set(range(len(self.class_names))):
-            raise ClassifierError("every class has exemplars, and every exemplar a class and a model", where="exemplars")
+            raise ClassifierError(
+                "every class has exemplars, every exemplar has a class and a model", where="exemplars"
+            )
         if self.descriptors.shape[1] != DESCRIPTOR_SIZE:
             raise ClassifierError("the descriptors are of another version", where="exemplars")
 
@@ -174,8 +175,6 @@ def exemplars_of(plan: Plan, descriptors: Float[np.ndarray, "A D"], seed: int, s
         numbers=np.concatenate([np.arange(count) for count in counts]),
         descriptors=descriptors[: sum(counts)],
     )
-
-
 
 
 def _lowest(distances: Float[np.ndarray, " M"], chosen: np.ndarray) -> int:

@@ -70,7 +70,7 @@ def classifier_metadata(
 
 
 def export_classifier(backbone: Backbone, head: Head, metadata: dict[str, Any]) -> bytes:
-    """One ONNX file: ``images`` uint8 (N, H, W, 3) to ``probabilities`` (N, C); ``open_probabilities`` and ``features``.
+    """One ONNX file: ``images`` uint8 (N, H, W, 3) to ``probabilities`` (N, C), ``open_probabilities``, ``features``.
 
     Args:
         backbone: what the head was trained on.

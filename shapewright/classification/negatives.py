@@ -15,6 +15,8 @@ from shapewright.mesh import TriangleMesh
 
 VERSION: Final = 1
 """Raise it with every change of the shapes: what was stored of the old ones is then left alone."""
+MIXED_VERSION: Final = 2
+"""Of the mixed objects alone."""
 
 _MAX_PARTS: Final = 9
 _SIDES: Final = 16
@@ -55,9 +57,10 @@ def mixed(first: TriangleMesh, second: TriangleMesh, rng: np.random.Generator) -
         points = _centred(mesh.vertices) @ Rotation.random(rng=rng).as_matrix().T
         height = points[mesh.faces].mean(axis=1)[:, 2]
         faces = mesh.faces[(height > np.median(height)) == keep_above]
-        kept = points[np.unique(faces)]
+        used, renumbered = np.unique(faces, return_inverse=True)
+        kept = points[used]
         cut = kept[:, 2].min() if keep_above else kept[:, 2].max()
-        halves.append(TriangleMesh(points - np.array([*kept[:, :2].mean(axis=0), cut]), faces))
+        halves.append(TriangleMesh(kept - np.array([*kept[:, :2].mean(axis=0), cut]), renumbered.reshape(-1, 3)))
     return joined(halves)
 
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from onnx import TensorProto, helper
+from onnx import helper
 
 from shapewright.classification.efficientnet_lite import Convolution
 from shapewright.classification.file_format import FEATURES, IMAGES

@@ -48,7 +48,7 @@ class InstanceGenerator(Protocol):
 
 @runtime_checkable
 class Source(Protocol):
-    """Gives random meshes to learn from: the same ones for the same generator, and the first ones of a longer series."""
+    """Gives random meshes to learn from: the same for the same generator, and the first ones of a longer series."""
 
     @property
     def name(self) -> str:
@@ -141,7 +141,7 @@ class MixedSource:
     @property
     def digest(self) -> str:
         """Changes with the models and the version of the mixing."""
-        return _digest_of(self.name, self.generators)
+        return _digest_of(f"{self.name} {negatives.MIXED_VERSION}", self.generators)
 
     def meshes(self, rng: np.random.Generator, count: int, steps: int) -> Iterator[TriangleMesh]:
         """Two halves each, of two random models."""

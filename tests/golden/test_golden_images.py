@@ -1,4 +1,4 @@
-"""Pictures of simple shapes stay as they are: both styles, and the comparison of a query with a fitted mesh."""
+"""Pictures of simple shapes stay as they are: every style, and the comparison of a query with a fitted mesh."""
 
 import numpy as np
 import pytest
@@ -14,12 +14,20 @@ SHAPES = {
 }
 
 
-@pytest.mark.parametrize("style", ["edges", "shaded"])
+@pytest.mark.parametrize("style", ["edges", "shaded", "fused", "lambert", "depth", "normals"])
 def test_learning_pictures(golden, style):
-    rotations = np.tile(even_views(4), (len(SHAPES), 1, 1))
-    scales = np.tile([0.8, 1.2, 1.6, 2.0], len(SHAPES))
-    objects = np.repeat(np.arange(len(SHAPES)), 4)
-    images = render_images(list(SHAPES.values()), None, rotations, scales, objects=objects, size=96, style=style)
+    framed = {} if style in ("edges", "shaded") else {"framing": "sphere", "window": 1.0}
+    scales = [0.7, 0.8, 0.9, 1.0] if framed else [0.8, 1.2, 1.6, 2.0]
+    images = render_images(
+        list(SHAPES.values()),
+        None,
+        np.tile(even_views(4), (len(SHAPES), 1, 1)),
+        np.tile(scales, len(SHAPES)),
+        objects=np.repeat(np.arange(len(SHAPES)), 4),
+        size=96,
+        style=style,
+        **framed,
+    )
     sheet = images.reshape(len(SHAPES), 4, 96, 96, 3).transpose(0, 2, 1, 3, 4).reshape(-1, 4 * 96, 3)
     golden(f"learning_{style}", sheet)
 

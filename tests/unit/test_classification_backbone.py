@@ -27,16 +27,17 @@ def test_torch_and_onnxruntime_agree(pictures):
     layers, _ = efficientnet_lite0_layers()
     with torch.no_grad():
         expected = TorchBackbone(layers)(torch.from_numpy(pictures)).numpy()
-    ours = FeatureExtractor(load_backbone())(pictures)
+    ours = FeatureExtractor(load_backbone("efficientnet_lite0"))(pictures)
     assert ours.shape == (8, 1280)
     assert expected.std() > 0.1
     assert np.abs(ours - expected).max() < 2e-4
 
 
 def test_batches_do_not_change_features(pictures):
-    whole = FeatureExtractor(load_backbone())(pictures)
-    pieces = FeatureExtractor(load_backbone(), batch_size=3, threads=1)(pictures)
-    assert np.abs(whole - pieces).max() < 1e-4
+    for name in ("efficientnet_lite0", "efficientnet_lite0_int8"):
+        whole = FeatureExtractor(load_backbone(name))(pictures)
+        pieces = FeatureExtractor(load_backbone(name), batch_size=3, threads=1)(pictures)
+        assert np.abs(whole - pieces).max() < 1e-4
 
 
 def test_features_follow_the_object_not_the_view():
@@ -53,17 +54,25 @@ def test_features_follow_the_object_not_the_view():
         within = np.mean([features[objects == i].std(axis=0).mean() for i in (0, 1)]) * np.sqrt(1280)
         return float(apart / within)
 
-    assert separation("efficientnet_lite0") > 2 * separation("efficientnet_lite0_random")
+    assert separation("efficientnet_lite0_int8") > 2 * separation("efficientnet_lite0_random")
 
 
-def test_the_graph_takes_bytes_and_is_the_same_each_time():
-    backbone = load_backbone()
+@pytest.mark.parametrize("name", ["efficientnet_lite0", "efficientnet_lite0_int8"])
+def test_the_graph_takes_bytes_and_is_the_same_each_time(name):
+    backbone = load_backbone(name)
     model = onnx.load_model_from_string(backbone.graph)
     assert model.graph.input[0].type.tensor_type.elem_type == onnx.TensorProto.UINT8
     assert len(backbone.weights_sha256) == 64
     assert backbone.weights_sha256.startswith("57934424"), "the digits in the weights' file name"
-    assert BACKBONES["efficientnet_lite0"]().graph == backbone.graph
-    assert load_backbone() is backbone
+    assert BACKBONES[name]().graph == backbone.graph
+    assert load_backbone(name) is backbone
+
+
+def test_the_key_names_the_graph():
+    keys = {load_backbone(name).key for name in BACKBONES}
+    assert len(keys) == len(BACKBONES)
+    assert load_backbone().key == load_backbone("efficientnet_lite0_int8").key
+    assert load_backbone().key.startswith("efficientnet_lite0_int8-")
 
 
 def test_unknown_and_damaged_backbones_are_refused():

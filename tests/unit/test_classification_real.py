@@ -20,8 +20,9 @@ def classifier(library_models) -> Classifier:
     for model in library_models.values():
         if model.class_name in QUERIES.values():
             by_class.setdefault(model.class_name, []).append(model.compile())
-    settings = TrainingSettings(variations=16, images_per_variation=4, held_out=0.2, epochs=40)
-    return Classifier(train_classifier(by_class, settings).onnx)
+    settings = TrainingSettings(variations=16, images_per_variation=4, negatives=8, held_out=0.2, epochs=40)
+    trained = train_classifier(by_class, settings)
+    return Classifier(trained.onnx, exemplars=trained.exemplars)
 
 
 @pytest.mark.real_data

@@ -1,19 +1,24 @@
 """Training: toy classes are learned, repeatably, from variations that are kept apart; progress and metadata tell."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from simple_shapes import BoxModel, toy_classes
 
-from shapewright.classification import FeatureExtractor, TrainingSettings, load_backbone, train_classifier
-from shapewright.classification.dataset import BLOCK, _blocks, class_features, join_classes, variation_images
-from shapewright.classification.head import fit_temperature, train_head
-from shapewright.classification.training import calibration_error, held_out_metrics
+from shapewright.classification import FeatureExtractor, MemoryStore, TrainingSettings, load_backbone, train_classifier
+from shapewright.classification.chunks import BLOCK, chunk_images, features_key
+from shapewright.classification.dataset import load_features, plan_learning
+from shapewright.classification.head import train_head
+from shapewright.classification.sources import ModelSource
+from shapewright.classification.training import calibration_error, draw_and_describe, held_out_metrics
 from shapewright.errors import Cancelled, ClassifierError
 from shapewright.progress import CallbackProgress
 
-SMALL = TrainingSettings(variations=12, images_per_variation=3, image_size=128, held_out=0.25, epochs=25, seed=3)
+SMALL = TrainingSettings(
+    variations=12, images_per_variation=3, image_size=128, negatives=6, held_out=0.25, epochs=25, seed=3
+)
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +33,7 @@ def test_toy_classes_are_learned(trained):
     assert result.class_names == ("bench", "cross", "block")
     assert result.metrics["held_out_accuracy"] == 1.0
     assert result.metrics["held_out_image_accuracy"] >= 0.9
-    assert result.metrics["images"] == 3 * 12 * 3
+    assert result.metrics["images"] == (3 * 12 + 6 + 1 + 1) * 3, "classes, assemblies, distorted and mixed"
     assert result.metrics["held_out_variations"] == 3 * 3
     assert np.trace(result.metrics["confusion"]) == 9
     curves = result.metrics["curves"]
@@ -38,63 +43,106 @@ def test_toy_classes_are_learned(trained):
 
 def test_random_weights_do_badly_on_the_same_pictures():
     # The control: if this passed with random weights, the test above would say nothing about the backbone.
-    settings = TrainingSettings(variations=12, images_per_variation=3, image_size=128, held_out=0.5, epochs=40)
-    accuracy = {}
-    for name in ("efficientnet_lite0", "efficientnet_lite0_random"):
-        extractor = FeatureExtractor(load_backbone(name))
-        features = [class_features(models, settings, extractor) for models in toy_classes().values()]
-        data = join_classes(features, settings)
-        head = train_head(data, 3, settings)
-        accuracy[name] = held_out_metrics(data, head, ("bench", "cross", "block"))["held_out_image_accuracy"]
-    assert accuracy["efficientnet_lite0"] >= 0.9
-    assert accuracy["efficientnet_lite0_random"] <= accuracy["efficientnet_lite0"] - 0.2
+    settings = TrainingSettings(
+        variations=12, images_per_variation=3, image_size=128, held_out=0.5, epochs=40, negatives=0, exemplars=False
+    )
+    store, accuracy = MemoryStore(), {}
+    for name in ("efficientnet_lite0_int8", "efficientnet_lite0_random"):
+        chosen = replace(settings, backbone=name)
+        plan = plan_learning(toy_classes(), (), chosen)
+        draw_and_describe(plan, chosen, store)
+        data = load_features(plan, chosen, load_backbone(name), store)
+        head = train_head(data, chosen)
+        accuracy[name] = held_out_metrics(data, head, plan.class_names)["held_out_image_accuracy"]
+    assert accuracy["efficientnet_lite0_int8"] >= 0.9
+    assert accuracy["efficientnet_lite0_random"] <= accuracy["efficientnet_lite0_int8"] - 0.2
 
 
 def test_the_same_seed_gives_the_same_file(trained):
     result, _ = trained
     again = train_classifier(toy_classes(), SMALL)
     assert again.onnx == result.onnx
-
-
-def test_pictures_of_a_class_do_not_depend_on_other_classes_or_counts():
-    model = toy_classes()["cross"][0]
-    whole = variation_images(model, 0, 4, SMALL)
-    assert np.array_equal(variation_images(model, 0, 2, SMALL), whole[: 2 * SMALL.images_per_variation])
-    assert not np.array_equal(variation_images(model, 1, 4, SMALL), whole), "another block, other variations"
-    other = TrainingSettings.from_dict({**SMALL.to_dict(), "seed": 4})
-    assert not np.array_equal(variation_images(model, 0, 4, other), whole)
+    assert np.array_equal(again.exemplars.descriptors, result.exemplars.descriptors)
 
 
 def test_several_models_share_a_class():
-    bench, cross = (toy_classes()[name][0] for name in ("bench", "cross"))
-    settings = TrainingSettings(variations=5, images_per_variation=1, image_size=64)
-    extractor = FeatureExtractor(load_backbone())
-    features = class_features([bench, cross], settings, extractor)
-    alone = extractor(variation_images(cross, 0, 2, settings))
-    assert features.shape == (5, 1280)
-    assert np.allclose(features[3:], alone, atol=1e-4)
+    bench, cross, block = (toy_classes()[name][0] for name in ("bench", "cross", "block"))
+    settings = TrainingSettings(variations=5, images_per_variation=2, image_size=64, negatives=0, exemplars=False)
+    plan = plan_learning({"both": [bench, cross], "block": [block]}, (), settings)
+    assert [(share.source.name, share.label, share.count) for share in plan.shares] == [
+        ("bench", 0, 3),
+        ("cross", 0, 2),
+        ("block", 1, 5),
+    ]
+    store, backbone = MemoryStore(), load_backbone()
+    draw_and_describe(plan, settings, store)
+    data = load_features(plan, settings, backbone, store)
+    assert data.features.shape == (20, 1280)
+    assert data.labels.tolist() == [0] * 5 + [1] * 5
+    (chunk,) = plan.shares[1].chunks
+    alone = FeatureExtractor(backbone)(chunk_images(chunk, settings))
+    assert np.allclose(data.features[6:10], alone, atol=0.01)
 
 
 @pytest.mark.parametrize(("models", "variations"), [(1, 7), (3, 1000), (4, 1000), (9, 20)])
 def test_variations_are_shared_evenly(models: int, variations: int):
     generators = [BoxModel(f"box {number}", [((0, 0, 0), (1, 1, 1))]) for number in range(models)]
-    shares = {generator.model.name: 0 for generator in generators}
-    for generator, _, count in _blocks(generators, variations):
-        assert count <= BLOCK
-        shares[generator.model.name] += count
-    assert sum(shares.values()) == variations
-    assert max(shares.values()) - min(shares.values()) <= 1
+    settings = TrainingSettings(variations=variations, negatives=0)
+    plan = plan_learning({"many": generators, **toy_classes()}, (), settings)
+    counts = [share.count for share in plan.shares if share.label == 0]
+    assert len(counts) == models
+    assert sum(counts) == variations
+    assert max(counts) - min(counts) <= 1
+    for share in plan.shares:
+        assert sum(chunk.count for chunk in share.chunks) == share.count
 
 
-def test_held_out_variations_are_kept_apart_whole():
-    settings = TrainingSettings(variations=20, images_per_variation=4, held_out=0.2)
-    data = join_classes([np.zeros((80, 2), dtype=np.float32)] * 3, settings)
-    for variation in np.unique(data.variations):
-        assert len(set(data.held_out[data.variations == variation])) == 1
-    for label in range(3):
-        apart = np.unique(data.variations[data.held_out & (data.labels == label)])
-        assert len(apart) == 4
-    assert len(np.unique(data.variations)) == 60
+def test_objects_of_no_class_are_other_models_assemblies_and_what_is_only_tried():
+    classes = toy_classes()
+    others = [classes.pop("block")[0], BoxModel("further", [((0, 0, 0), (1, 1, 1))])]
+    plan = plan_learning(classes, others, TrainingSettings(variations=8, negatives=5))
+    rest = [share for share in plan.shares if share.label == len(plan.class_names)]
+    assert [(share.source.name, share.count, share.learned) for share in rest] == [
+        ("block", 3, True),
+        ("further", 2, True),
+        ("assemblies", 5, True),
+        ("distorted", 1, False),
+        ("mixed", 1, False),
+    ]
+    assert len({share.source.digest for share in plan.shares}) == len(plan.shares)
+    without = plan_learning(classes, others, TrainingSettings(variations=8, negatives=0))
+    assert all(share.label < 2 for share in without.shares)
+
+
+def test_held_out_variations_are_kept_apart_whole_and_by_class():
+    settings = TrainingSettings(variations=20, images_per_variation=4, negatives=10, held_out=0.2, exemplars=False)
+    backbone, store = load_backbone(), MemoryStore()
+
+    def features_of(classes):
+        plan = plan_learning(classes, (), settings)
+        for chunk, _ in plan.chunks:
+            store.put(features_key(chunk, settings, backbone), np.zeros((chunk.count, 4, 2), dtype=np.float16))
+        return load_features(plan, settings, backbone, store)
+
+    data = features_of(toy_classes())
+    assert len(data.labels) == len(data.held_out) == 3 * 20 + 10 + 2 + 2
+    assert np.bincount(data.labels[data.held_out]).tolist() == [4, 4, 4, 2]
+    assert not data.held_out[~data.learned].any(), "what is only tried is never learned from anyway"
+    rows = data.rows(data.held_out)
+    assert len(rows) == 14 * 4
+    assert np.array_equal(np.unique(rows // 4), np.flatnonzero(data.held_out)), "all pictures of a mesh or none"
+    fewer = {name: models for name, models in toy_classes().items() if name != "cross"}
+    assert np.array_equal(features_of(fewer).held_out[:20], data.held_out[:20]), "whatever other classes there are"
+
+
+def test_a_training_without_variation_shows_base_models_only():
+    model = toy_classes()["cross"][0]
+    values = ModelSource(model, varied=False).values(np.random.default_rng(0), 3)
+    assert np.all(values == 1.0)
+    assert ModelSource(model, varied=False).digest != ModelSource(model).digest
+    settings = replace(SMALL, vary=False, variations=4, images_per_variation=2, image_size=64, negatives=2)
+    result = train_classifier(toy_classes(), settings)
+    assert result.exemplars is None
 
 
 def test_progress_goes_up_and_tells_of_pictures_and_epochs(trained):
@@ -119,7 +167,9 @@ def test_training_can_be_cancelled_while_drawing_and_while_learning():
         with pytest.raises(Cancelled):
             train_classifier(
                 toy_classes(),
-                TrainingSettings(variations=2, images_per_variation=1, image_size=64, held_out=0.5),
+                TrainingSettings(
+                    variations=2, images_per_variation=1, image_size=64, held_out=0.5, negatives=0, exemplars=False
+                ),
                 CallbackProgress(stop),
             )
 
@@ -134,7 +184,11 @@ def test_metadata_tells_where_a_classifier_comes_from(trained):
     }
     assert result.metadata["backbone"]["weights_sha256"] == load_backbone().weights_sha256
     assert result.metadata["settings"]["seed"] == 3
-    assert result.metadata["rendering"]["style"] == "edges"
+    rendering = result.metadata["rendering"]
+    assert (rendering["style"], rendering["framing"], rendering["window"]) == ("fused", "sphere", 1.0)
+    assert rendering["scale_range"] == [0.7, 1.0]
+    assert [model["digest"] for model in result.metadata["models"]] == list(result.exemplars.digests)
+    assert set(result.metadata["known"]) == {"pictures", "geometry"}
     assert TrainingSettings.from_dict(json.loads(json.dumps(result.metadata))["settings"]) == SMALL
 
 
@@ -160,6 +214,8 @@ def test_a_class_needs_models_and_not_too_many():
         ("images_per_variation", 0),
         ("image_size", 100),
         ("scale_range", (2.0, 0.8)),
+        ("negatives", -1),
+        ("window", 0.0),
         ("held_out", 1.0),
         ("epochs", 0),
         ("seed", -1),
@@ -175,7 +231,15 @@ def test_settings_that_make_no_sense_are_refused(name, value):
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("variation", 5), ("variations", "many"), ("variations", 2.5), ("seed", True), ("scale_range", [1, "x"])],
+    [
+        ("variation", 5),
+        ("variations", "many"),
+        ("variations", 2.5),
+        ("seed", True),
+        ("scale_range", [1, "x"]),
+        ("exemplars", 1),
+        ("style", 2),
+    ],
 )
 def test_settings_from_json_are_checked(name, value):
     with pytest.raises(ClassifierError) as caught:
@@ -188,14 +252,12 @@ def test_settings_from_json_keep_defaults():
     assert TrainingSettings.from_dict({"scale_range": [1, 2], "seed": 3}).scale_range == (1.0, 2.0)
 
 
-def test_temperature_softens_and_never_sharpens():
-    rng = np.random.default_rng(0)
-    labels = rng.integers(0, 3, 4000)
-    honest = np.eye(3)[labels] * 1.5 + rng.gumbel(size=(4000, 3))
-    fitted = fit_temperature(10 * honest, labels)
-    assert fitted > 3
-    assert fit_temperature(honest * 0.01, labels) == 1.0
-    assert fit_temperature(np.eye(3)[labels] * 5, labels) == 1.0, "all right: no reason to be surer still"
+def test_the_papers_settings_are_the_papers():
+    paper = TrainingSettings.paper(seed=5)
+    assert (paper.variations, paper.images_per_variation, paper.seed) == (1000, 10, 5)
+    assert (paper.framing, paper.window, paper.scale_range) == ("paper", 2.0, (0.8, 2.0))
+    assert paper.negatives == 0
+    assert not paper.exemplars
 
 
 def test_calibration_error_is_the_gap_between_sureness_and_truth():

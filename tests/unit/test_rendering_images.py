@@ -11,6 +11,8 @@ from shapewright.errors import RenderingError
 from shapewright.mesh import TriangleMesh
 from shapewright.rendering import images as images_module
 from shapewright.rendering import random_views, render_images, renderer_name
+from shapewright.rendering.images import normalized_positions
+from shapewright.rendering.styles import STYLES
 from shapewright.rendering.views import spread_views
 
 IDENTITY = np.eye(3)[None]
@@ -61,7 +63,7 @@ def test_a_quarter_turn_turns_the_picture(quarters, seed):
     assert_alike(np.rot90(draw(mesh, start, scale), quarters), draw(mesh, turn[None] @ start, scale))
 
 
-@pytest.mark.parametrize("style", ["edges", "shaded"])
+@pytest.mark.parametrize("style", sorted(STYLES))
 @pytest.mark.parametrize("share", [0.5, 1.0])
 def test_winding_does_not_matter(style, share):
     rotation, scale = random_views(np.random.default_rng(3), 1)
@@ -93,7 +95,7 @@ def test_creases_and_steps_are_lines_and_smooth_surfaces_have_none():
     assert draw(step, size=160)[80, 40:120, 0].min() < 90, "a plate in front of another has an outline"
 
 
-@pytest.mark.parametrize("style", ["edges", "shaded"])
+@pytest.mark.parametrize("style", sorted(STYLES))
 def test_a_batch_equals_one_by_one(style):
     rng = np.random.default_rng(0)
     model = simple_shapes.toy_classes()["bench"][0]
@@ -151,6 +153,58 @@ def test_place_and_size_of_the_object_do_not_matter(shift, factor):
     moved = mesh.transformed(np.eye(3), np.array(shift), factor)
     rotation, scale = random_views(np.random.default_rng(5), 1)
     assert_alike(draw(mesh, rotation, scale), draw(moved, rotation, scale))
+
+
+SPHERE = {"framing": "sphere", "window": 1.0}
+
+
+@given(seed=st.integers(0, 2**32 - 1), count=st.integers(2, 30))
+@settings(max_examples=30, deadline=None)
+def test_in_the_sphere_the_farthest_point_is_at_distance_1(seed, count):
+    rng = np.random.default_rng(seed)
+    points = rng.normal(size=(3, count, 3)) * rng.uniform(0.01, 100.0, (3, 1, 1)) + rng.uniform(-100.0, 100.0, 3)
+    framed = normalized_positions(points, "sphere")
+    assert np.allclose(np.linalg.norm(framed, axis=2).max(axis=1), 1.0, atol=1e-5)
+    assert np.allclose(framed.min(axis=1) + framed.max(axis=1), 0.0, atol=1e-5)
+
+
+@pytest.mark.parametrize("style", ["fused", "lambert"])
+def test_in_the_sphere_nothing_is_cut_off(style):
+    meshes = [simple_shapes.goblet(), simple_shapes.stool(), simple_shapes.crossing_sheets(), simple_shapes.box()]
+    rotations, _ = random_views(np.random.default_rng(7), 80)
+    objects = np.repeat(np.arange(4), 20)
+    pictures = render_images(
+        meshes, None, rotations, np.full(80, 0.95), objects=objects, size=96, style=style, **SPHERE
+    )
+    ground = pictures[0, 0, 0]
+    rim = np.concatenate([pictures[:, 0], pictures[:, -1], pictures[:, :, 0], pictures[:, :, -1]], axis=1)
+    assert np.all(rim == ground)
+    covered = (pictures != ground).any(axis=3)
+    reach = [np.hypot(*(np.argwhere(one) - 47.5).T).max() / 48 for one in covered]
+    assert max(reach) > 0.9, "and the room is used"
+
+
+def _with_one_dense_side() -> TriangleMesh:
+    """A box whose right side is cut into 8 x 8 squares."""
+    box = simple_shapes.box((1.0, 0.6, 0.4))
+    right = box.vertices[:, 0].max()
+    others = box.faces[~(box.vertices[box.faces][:, :, 0] == right).all(axis=1)]
+    y, z = (np.linspace(box.vertices[:, axis].min(), box.vertices[:, axis].max(), 9) for axis in (1, 2))
+    points = np.array([(right, a, b) for a in y for b in z])
+    row, column = (part.ravel() for part in np.meshgrid(np.arange(8), np.arange(8), indexing="ij"))
+    first = row * 9 + column + len(box.vertices)
+    dense = np.concatenate([np.stack([first, first + 1, first + 10], 1), np.stack([first, first + 10, first + 9], 1)])
+    return TriangleMesh(np.concatenate([box.vertices, points]), np.concatenate([others, dense]))
+
+
+def test_in_the_sphere_the_density_of_vertices_does_not_matter():
+    plain, dense = simple_shapes.box((1.0, 0.6, 0.4)), _with_one_dense_side()
+    rotations, _ = random_views(np.random.default_rng(8), 6)
+    for rotation in rotations[:, None]:
+        one, other = (draw(mesh, rotation, style="lambert", **SPHERE) for mesh in (plain, dense))
+        assert_alike(one, other)
+    by_mean = [draw(mesh, rotations[:1], style="lambert", framing="paper", window=2.0) for mesh in (plain, dense)]
+    assert np.abs(by_mean[0].astype(np.int16) - by_mean[1]).mean() > 2, "the vertex mean moves with it"
 
 
 def test_drawing_again_gives_the_same_bytes():

@@ -1,0 +1,106 @@
+"""How sure a classifier may be: measured on models that it has not learned from."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from simple_shapes import BoxModel, toy_classes
+
+from shapewright.classification import MemoryStore, TrainingSettings, load_backbone, train_classifier
+from shapewright.classification.calibration import MAX_TEMPERATURE, Calibration, auroc, calibrate, fit_temperature
+from shapewright.classification.chunks import features_key
+from shapewright.classification.dataset import load_features, plan_learning
+
+SCORES = st.lists(st.integers(0, 6).map(float), min_size=1, max_size=25)
+
+
+@given(SCORES, SCORES)
+def test_the_area_is_the_share_of_pairs_in_order(positive: list[float], negative: list[float]) -> None:
+    pairs = [(p > n) + 0.5 * (p == n) for p in positive for n in negative]
+    assert auroc(np.array(positive), np.array(negative)) == pytest.approx(np.mean(pairs))
+
+
+@given(SCORES, SCORES)
+def test_exchanging_the_kinds_turns_the_area_around(positive: list[float], negative: list[float]) -> None:
+    one, other = np.array(positive), np.array(negative)
+    assert auroc(one, other) + auroc(other, one) == pytest.approx(1.0)
+
+
+def test_temperature_softens_and_never_sharpens() -> None:
+    rng = np.random.default_rng(0)
+    labels = rng.integers(0, 3, 4000)
+    honest = np.eye(3)[labels] * 1.5 + rng.gumbel(size=(4000, 3))
+    fitted = fit_temperature(10 * honest, labels)
+    assert fitted > 3
+    assert fit_temperature(honest * 0.01, labels) == 1.0
+    assert fit_temperature(np.eye(3)[labels] * 5, labels) == 1.0, "all right: no reason to be surer still"
+    assert fit_temperature(np.eye(3)[(labels + 1) % 3] * 500, labels) <= MAX_TEMPERATURE + 1e-9
+
+
+SETTINGS = TrainingSettings(
+    variations=40, images_per_variation=2, negatives=20, exemplars=False, batch_size=16, learning_rate=0.02
+)
+
+
+def calibrated(centre_of, settings: TrainingSettings = SETTINGS) -> Calibration:
+    """Calibrate two classes of two models each, whose features lie about a centre for each source."""
+    names = ("a1", "a2", "b1", "b2")
+    one, two, three, four = (BoxModel(name, [((0, 0, 0), (1, 1, 1))]) for name in names)
+    plan = plan_learning({"a": [one, two], "b": [three, four]}, (), settings)
+    rng, store, backbone = np.random.default_rng(0), MemoryStore(), load_backbone()
+    for chunk, _ in plan.chunks:
+        noise = 0.3 * rng.normal(size=(chunk.count, settings.images_per_variation, 8))
+        store.put(features_key(chunk, settings, backbone), (noise + centre_of(chunk.source.name)).astype(np.float16))
+    return calibrate(plan, load_features(plan, settings, backbone, store), settings)
+
+
+def direction(number: int) -> np.ndarray:
+    return 3.0 * np.eye(8)[number]
+
+
+def test_models_that_are_like_their_class_are_told_without_having_been_learned() -> None:
+    places = {"a1": 0, "a2": 0, "b1": 1, "b2": 1}
+    found = calibrated(lambda name: direction(places.get(name, 2)))
+    assert found.metrics["left_out_accuracy_pictures"] == 1.0
+    assert found.metrics["left_out_auroc_pictures"] > 0.99
+    assert 40 <= found.metrics["left_out_meshes"] <= 80, "some of each model"
+    assert found.pictures is not None
+    assert found.pictures.probability(0.0) > 0.5
+    assert found.geometry is None
+
+
+def test_a_left_out_model_has_really_not_been_learned() -> None:
+    # Each model looks like one of the other class: where all are learned all are told apart, but not so left out.
+    looks = {
+        "a1": direction(0),
+        "b1": direction(0) + direction(3),
+        "a2": direction(4),
+        "b2": direction(4) + direction(5),
+    }
+    found = calibrated(lambda name: looks.get(name, direction(6)))
+    assert found.metrics["left_out_accuracy_pictures"] < 0.7
+    assert found.temperature > 1.5, "it has learned to be less sure"
+
+
+def test_without_objects_of_no_class_there_is_no_curve() -> None:
+    settings = TrainingSettings(variations=20, images_per_variation=1, negatives=0, exemplars=False)
+    places = {"a1": 0, "a2": 0, "b1": 1, "b2": 1}
+    found = calibrated(lambda name: direction(places[name]), settings)
+    assert found.pictures is None
+    assert found.geometry is None
+    assert "left_out_auroc_pictures" not in found.metrics
+
+
+def test_a_training_reports_what_becomes_of_left_out_models() -> None:
+    classes = {name: [*models, *also(models[0])] for name, models in toy_classes().items()}
+    settings = TrainingSettings(variations=12, images_per_variation=2, image_size=64, negatives=8, held_out=0.25)
+    metrics = train_classifier(classes, settings).metrics
+    for name in ("left_out_accuracy", "left_out_accuracy_pictures", "left_out_auroc", "left_out_auroc_pictures"):
+        assert 0.0 <= metrics[name] <= 1.0
+    assert metrics["left_out_meshes"] == 3 * 12
+    assert metrics["left_out_accuracy"] > 0.6
+
+
+def also(model: BoxModel) -> list[BoxModel]:
+    """Another model of the same class, a little different."""
+    return [BoxModel(f"{model.model.name} again", model.parts * 1.1)]

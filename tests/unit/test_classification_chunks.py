@@ -1,0 +1,184 @@
+"""Chunks: each depends on nothing but itself, is computed once, and lets a training go on where it was."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from simple_shapes import BoxModel, toy_classes
+
+from shapewright.classification import FeatureExtractor, FolderStore, MemoryStore, TrainingSettings, load_backbone
+from shapewright.classification import training as training_module
+from shapewright.classification.array_store import ArrayStore
+from shapewright.classification.chunks import (
+    Chunk,
+    chunk_images,
+    chunks_of,
+    descriptors_key,
+    features_key,
+    is_stored,
+    store_chunk,
+)
+from shapewright.classification.dataset import load_features, plan_learning
+from shapewright.classification.sources import (
+    SERIES,
+    AssemblySource,
+    DistortedSource,
+    MixedSource,
+    ModelSource,
+    Source,
+)
+from shapewright.classification.training import train_classifier
+from shapewright.errors import Cancelled, ClassifierError
+from shapewright.progress import CallbackProgress
+
+SMALL = TrainingSettings(
+    variations=6, images_per_variation=2, image_size=64, negatives=2, exemplars=False, held_out=0.25, epochs=5, seed=3
+)
+BOXES = [models[0] for models in toy_classes().values()]
+SOURCES = [ModelSource(BOXES[0]), AssemblySource(), DistortedSource(BOXES), MixedSource(BOXES)]
+
+
+class CountingExtractor(FeatureExtractor):
+    """Tells how many pictures were described."""
+
+    seen: list[int] = []  # noqa: RUF012 - of all extractors
+
+    def __call__(self, images: np.ndarray) -> np.ndarray:
+        self.seen.append(len(images))
+        return super().__call__(images)
+
+
+@pytest.fixture
+def seen(monkeypatch) -> list[int]:
+    """Numbers of pictures that networks were asked about from now on."""
+    monkeypatch.setattr(training_module, "FeatureExtractor", CountingExtractor)
+    monkeypatch.setattr(CountingExtractor, "seen", [])
+    return CountingExtractor.seen
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda source: source.name)
+def test_a_shorter_chunk_is_the_beginning_of_a_longer_one(source: Source) -> None:
+    long, short = Chunk(source, 1, 5), Chunk(source, 1, 2)
+    pictures = chunk_images(long, SMALL)
+    assert np.array_equal(chunk_images(short, SMALL), pictures[: 2 * SMALL.images_per_variation])
+    for one, other in zip(short.meshes(SMALL), long.meshes(SMALL), strict=False):
+        assert np.array_equal(one.vertices, other.vertices)
+        assert np.array_equal(one.faces, other.faces)
+    for one, other in zip(short.views(SMALL), long.views(SMALL), strict=True):
+        assert np.array_equal(one, other[:2])
+    assert not np.array_equal(chunk_images(Chunk(source, 0, 5), SMALL), pictures), "another chunk, other meshes"
+    assert not np.array_equal(chunk_images(long, replace(SMALL, seed=4)), pictures)
+
+
+@pytest.mark.parametrize("count", [1, SERIES - 1, SERIES, SERIES + 1, 3 * SERIES])
+def test_chunks_cut_a_source_without_a_rest(count: int) -> None:
+    chunks = chunks_of(SOURCES[0], count)
+    assert [chunk.number for chunk in chunks] == list(range(len(chunks)))
+    assert sum(chunk.count for chunk in chunks) == count
+    assert all(chunk.count == SERIES for chunk in chunks[:-1])
+
+
+def test_a_name_says_all_that_the_features_depend_on() -> None:
+    chunk, backbone = Chunk(SOURCES[0], 0, 3), load_backbone()
+    keys = [features_key(chunk, SMALL, backbone)]
+    keys += [
+        features_key(chunk, replace(SMALL, **change), backbone)
+        for change in (
+            {"seed": 4},
+            {"images_per_variation": 3},
+            {"image_size": 96},
+            {"scale_range": (0.5, 1.0)},
+            {"style": "depth"},
+            {"framing": "paper"},
+            {"window": 2.0},
+            {"subdivision_steps": 1},
+        )
+    ]
+    keys.append(features_key(chunk, SMALL, load_backbone("efficientnet_lite0_random")))
+    keys += [features_key(Chunk(*place), SMALL, backbone) for place in ((SOURCES[0], 1, 3), (SOURCES[0], 0, 4))]
+    keys += [features_key(Chunk(source, 0, 3), SMALL, backbone) for source in SOURCES[1:]]
+    assert len(set(keys)) == len(keys)
+    learning = replace(SMALL, epochs=9, negatives=7, variations=50, held_out=0.5, learning_rate=0.1)
+    assert features_key(chunk, learning, backbone) == keys[0], "how one learns does not matter"
+
+
+def test_what_is_stored_is_not_computed_again(seen) -> None:
+    store = MemoryStore()
+    first = train_classifier(toy_classes(), SMALL, store=store)
+    pictures = (3 * 6 + 2 + 1 + 1) * 2
+    assert sum(seen) == pictures
+    again = train_classifier(toy_classes(), replace(SMALL, epochs=3), store=store)
+    assert sum(seen) == pictures
+    assert again.onnx != first.onnx
+    with_exemplars = train_classifier(toy_classes(), replace(SMALL, exemplars=True), store=store)
+    assert sum(seen) == pictures, "descriptors need no pictures"
+    assert len(with_exemplars.exemplars) == 18
+
+
+def test_a_training_goes_on_where_it_was_cancelled(seen, tmp_path) -> None:
+    def stop(fraction: float, message: str) -> None:
+        if message.startswith("block"):
+            raise Cancelled
+
+    store = FolderStore(tmp_path)
+    with pytest.raises(Cancelled):
+        train_classifier(toy_classes(), SMALL, CallbackProgress(stop), store=store)
+    done = sum(seen)
+    assert done == 2 * 6 * 2, "bench and cross"
+    resumed = train_classifier(toy_classes(), SMALL, store=store)
+    assert sum(seen) == (3 * 6 + 2 + 1 + 1) * 2, "nothing twice"
+    assert resumed.onnx == train_classifier(toy_classes(), SMALL).onnx
+
+
+def test_a_cancelled_chunk_leaves_nothing(tmp_path) -> None:
+    def stop(fraction: float, message: str) -> None:
+        if fraction > 0:
+            raise Cancelled
+
+    extractor, store, chunk = FeatureExtractor(load_backbone()), FolderStore(tmp_path), Chunk(SOURCES[0], 0, 20)
+    with pytest.raises(Cancelled):
+        store_chunk(chunk, SMALL, extractor, store, described=True, progress=CallbackProgress(stop))
+    assert not list(tmp_path.rglob("*.npy"))
+
+
+def test_an_added_class_computes_its_own_chunks_alone(seen) -> None:
+    settings = replace(SMALL, negatives=0)
+    classes, store = toy_classes(), MemoryStore()
+    train_classifier({name: classes[name] for name in ("bench", "cross")}, settings, store=store)
+    assert sum(seen) == 2 * 6 * 2
+    added = train_classifier({"block": classes["block"], **classes}, settings, store=store)
+    assert sum(seen) == 3 * 6 * 2
+    assert added.onnx == train_classifier({"block": classes["block"], **classes}, settings).onnx
+
+
+def test_a_changed_model_computes_its_own_chunks_alone(seen) -> None:
+    settings = replace(SMALL, negatives=0)
+    classes, store = toy_classes(), MemoryStore()
+    train_classifier(classes, settings, store=store)
+    before = sum(seen)
+    changed = BoxModel("block of another kind", [((0, 0, 0), (1, 2, 1))])
+    train_classifier({**classes, "block": [changed]}, settings, store=store)
+    assert sum(seen) == before + 6 * 2
+
+
+def _stored(store: ArrayStore, chunk: Chunk) -> list[np.ndarray]:
+    keys = (features_key(chunk, SMALL, load_backbone()), descriptors_key(chunk, SMALL))
+    return [np.asarray(store.get(key)) for key in keys]
+
+
+def test_features_and_descriptors_of_a_shorter_chunk_are_the_beginning() -> None:
+    extractor, store = FeatureExtractor(load_backbone()), MemoryStore()
+    chunks = [Chunk(SOURCES[0], 0, count) for count in (11, 4)]
+    for chunk in chunks:
+        assert not is_stored(chunk, SMALL, extractor.backbone, store, described=True)
+        store_chunk(chunk, SMALL, extractor, store, described=True)
+        assert is_stored(chunk, SMALL, extractor.backbone, store, described=True)
+    for long, short in zip(*(_stored(store, chunk) for chunk in chunks), strict=True):
+        assert len(long) == 11
+        assert np.array_equal(short, long[:4])
+
+
+def test_what_is_missing_is_said() -> None:
+    plan = plan_learning(toy_classes(), (), SMALL)
+    with pytest.raises(ClassifierError, match="not stored"):
+        load_features(plan, SMALL, load_backbone(), MemoryStore())

@@ -1,0 +1,106 @@
+"""Putting evidence together: what must hold of scores, probabilities and of the curve of what is known."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+from shapewright.classification.evidence import (
+    FLOOR,
+    KnownCurve,
+    class_probabilities,
+    class_scores,
+    fit_known_curve,
+)
+
+SHARES = arrays.arrays(np.float64, 5, elements=st.floats(0.001, 1.0))
+DISTANCES = arrays.arrays(np.float64, 5, elements=st.floats(0.0, 3.0))
+PLACES = st.integers(0, 4)
+
+
+@given(SHARES, DISTANCES, PLACES, st.floats(0.01, 0.5))
+def test_more_likely_pictures_and_a_nearer_exemplar_raise_a_score(shares, distances, place, step) -> None:
+    before = class_scores(shares, distances)
+    likelier, nearer = shares.copy(), distances.copy()
+    likelier[place] += step
+    nearer[place] -= step
+    others = np.arange(5) != place
+    for after in (class_scores(likelier, distances), class_scores(shares, nearer)):
+        assert after[place] > before[place]
+        assert np.array_equal(after[others], before[others])
+    assert class_scores(likelier)[place] > class_scores(shares)[place]
+
+
+@given(arrays.arrays(np.float32, (3, 4), elements=st.floats(0, 1, width=32)))
+def test_scores_are_bounded_below_and_of_many_meshes_at_once(shares) -> None:
+    scores = class_scores(shares)
+    assert np.all(scores >= np.log(FLOOR) - 1e-9)
+    for row, one in zip(scores, shares, strict=True):
+        assert np.allclose(class_scores(one), row)
+
+
+@given(SHARES, DISTANCES, PLACES, st.floats(0.01, 0.5))
+def test_probabilities_sum_to_1_and_follow_the_evidence(shares, distances, place, step) -> None:
+    shares = shares / shares.sum()
+    before = class_probabilities(shares, distances)
+    assert before.sum() == pytest.approx(1.0)
+    assert np.all(before >= 0)
+    nearer = distances.copy()
+    nearer[place] -= step
+    after = class_probabilities(shares, nearer)
+    assert after.sum() == pytest.approx(1.0)
+    assert after[place] >= before[place]
+    assert np.all(np.delete(after, place) <= np.delete(before, place) + 1e-12)
+
+
+@given(SHARES, st.floats(0.0, 3.0))
+def test_distances_that_are_all_equal_say_nothing(shares, distance) -> None:
+    shares = shares / shares.sum()
+    even = class_probabilities(shares, np.full(5, distance))
+    assert np.allclose(even, (shares + FLOOR) / (1 + 5 * FLOOR))
+    assert np.allclose(class_probabilities(shares), shares)
+
+
+@given(
+    middle=st.floats(-6.0, 0.0),
+    gap=st.floats(1.0, 6.0),
+    seed=st.integers(0, 1000),
+    counts=st.tuples(st.integers(5, 60), st.integers(5, 60)),
+)
+@settings(deadline=None, max_examples=40)
+def test_the_curve_separates_and_is_one_half_between(middle, gap, seed, counts) -> None:
+    rng = np.random.default_rng(seed)
+    known = middle + gap / 2 + rng.uniform(-0.1, 0.1, counts[0])
+    unknown = middle - gap / 2 + rng.uniform(-0.1, 0.1, counts[1])
+    is_known = np.arange(sum(counts)) < counts[0]
+    curve = fit_known_curve(np.concatenate([known, unknown]), is_known)
+    assert curve.slope > 0
+    assert curve.probability(middle) == pytest.approx(0.5, abs=0.1), "whatever their numbers"
+    assert min(curve.probability(float(score)) for score in known) > 0.5
+    assert max(curve.probability(float(score)) for score in unknown) < 0.5
+
+
+def test_the_curve_of_kinds_that_overlap_is_honest() -> None:
+    rng = np.random.default_rng(0)
+    scores = np.concatenate([rng.normal(1.0, 1.0, 4000), rng.normal(-1.0, 1.0, 400)])
+    curve = fit_known_curve(scores, np.arange(4400) < 4000)
+    assert curve.slope == pytest.approx(2.0, rel=0.15), "the log odds of two such normal distributions"
+    assert curve.intercept == pytest.approx(0.0, abs=0.2)
+
+
+@given(st.floats(0.01, 50.0), st.floats(-50.0, 50.0), st.floats(-10.0, 10.0), st.floats(0.0, 5.0))
+def test_the_curve_rises_and_survives_a_file(slope, intercept, score, step) -> None:
+    curve = KnownCurve(slope, intercept)
+    assert 0.0 <= curve.probability(score) <= curve.probability(score + step) <= 1.0
+    assert KnownCurve.from_dict(json.loads(json.dumps(curve.to_dict()))) == curve
+
+
+@pytest.mark.parametrize(
+    "values", [{}, {"slope": 1.0}, {"slope": "steep", "intercept": 0}, {"slope": None, "intercept": 0}]
+)
+def test_a_damaged_curve_is_refused(values) -> None:
+    with pytest.raises((KeyError, TypeError, ValueError)):
+        KnownCurve.from_dict(values)
