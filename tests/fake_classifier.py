@@ -23,7 +23,12 @@ class ExtentClassifier:
         probabilities = {"slab": slab, "rod": 1.0 - slab}
         return Classification(
             class_name=max(probabilities, key=lambda name: probabilities[name]),
+            known=None,
             probabilities=probabilities,
+            picture_probabilities=probabilities,
+            scores=probabilities,
+            distances=None,
+            descriptor=None,
             per_view=np.tile(np.array([1.0 - slab, slab], dtype=np.float32), (views, 1)),
             images=np.zeros((views, 8, 8, 3), dtype=np.uint8),
         )

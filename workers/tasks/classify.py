@@ -1,20 +1,13 @@
 """Tell what an uploaded mesh is."""
 
 from functools import partial
-from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from models_store import catalog
+from workers.classifiers import stored_classifier
 from workers.context import JobContext, Outcome
 from workers.finite import finite
-
-if TYPE_CHECKING:
-    from shapewright.classification import Classifier
-
-
-_kept: "Final[dict[str, Classifier]]" = {}
-"""The classifier of the last job by its key, as most jobs ask the same one; keys never change their content."""
 
 
 def classify(context: JobContext) -> Outcome:
@@ -22,11 +15,10 @@ def classify(context: JobContext) -> Outcome:
     identifier = str(context.claim.payload["classification_id"])
     with context.database.reading() as session:
         row = catalog.get_classification(session, identifier)
-        onnx_key = catalog.get_classifier(session, row.classifier_id).onnx_key
     context.progress.report(0.0, "reading the mesh")
     mesh = context.load_query(row.mesh_id)
     context.progress.report(0.3, "reading the classifier")
-    classifier = _classifier(context, str(onnx_key))
+    classifier = stored_classifier(context, row.classifier_id).classifier
     context.progress.report(0.6, "looking at the mesh")
     rng = np.random.default_rng(row.settings.get("seed", 0))
     answer = classifier.classify(mesh, views=row.settings.get("views", 10), rng=rng)
@@ -40,12 +32,3 @@ def classify(context: JobContext) -> Outcome:
         }
     )
     return Outcome(partial(catalog.record_classification, identifier=identifier, result=result))
-
-
-def _classifier(context: JobContext, onnx_key: str) -> "Classifier":
-    from shapewright.classification import Classifier
-
-    if onnx_key not in _kept:
-        _kept.clear()
-        _kept[onnx_key] = Classifier(context.artifacts.get(onnx_key))
-    return _kept[onnx_key]
