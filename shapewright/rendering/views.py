@@ -34,7 +34,7 @@ def spread_views(
     Each rotation alone is still uniformly random, and so is each scale.
     """
     directions = even_views(count)
-    rolls = Rotation.from_euler("z", rng.uniform(0.0, 2.0 * np.pi, count)).as_matrix().reshape(count, 3, 3)
+    rolls = Rotation.from_euler("z", rng.uniform(0.0, 2.0 * np.pi, (count, 1))).as_matrix().reshape(count, 3, 3)
     whole = Rotation.random(rng=rng).as_matrix()
     return np.asarray(rolls @ directions @ whole), rng.uniform(*scale_range, size=count)
 
