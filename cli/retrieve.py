@@ -1,6 +1,5 @@
 """`shapewright retrieve`: which of these meshes are of a class, like a model, like a mesh?"""
 
-import hashlib
 import time
 from collections.abc import Iterable
 from enum import StrEnum
@@ -92,13 +91,14 @@ def retrieve(
     if sum(wanted is not None for wanted in (class_name, model, mesh)) != 1:
         raise typer.BadParameter("name one of a class, a model, a mesh", param_hint="--class, --model, --mesh")
     _check_sheet(sheet, limit, with_query=mesh is not None)
-    from shapewright.classification import Classifier, MeshQuery, rank
+    from shapewright.classification import MeshQuery, exemplars_file, files_digest, load_classifier, rank
 
     started_s = time.monotonic()
     files = find_meshes(sources)
     queried = [] if mesh is None else find_meshes([mesh])
-    network = Classifier(classifier)
-    digest = hashlib.sha256(classifier.read_bytes()).hexdigest()
+    network = load_classifier(classifier)
+    beside = exemplars_file(classifier)
+    digest = files_digest(classifier.read_bytes(), beside if beside.is_file() else None)
     models = _models(class_name, model, network.class_names, evidence)
     with threads(jobs) as used, shown_progress("retrieving") as progress:
         indexed = index_files(
@@ -124,7 +124,7 @@ def retrieve(
         ranked = rank(collection, query, evidence.value, progress=PartialProgress(progress, 0.95, 1.0))
         shown = ranked[:limit]
         if sheet is not None:
-            _draw(sheet, shown, mesh, class_name or model)
+            _draw(sheet, shown, mesh, f"of the class {class_name}" if class_name else f"like {model or 'the query'}")
     if as_json:
         print_json(
             {
@@ -207,26 +207,21 @@ def _first_reason(indexed: IndexedFiles, files: list[Path]) -> str:
     return next(f"{one.name}: {one.reason}" for one in indexed.skipped if one.name in names)
 
 
-def _draw(sheet: Path, shown: "list[RankedMesh]", mesh: Path | None, wanted: str | None) -> None:
+def _draw(sheet: Path, shown: "list[RankedMesh]", mesh: Path | None, wanted: str) -> None:
     from cli.picture import save_picture
     from shapewright.mesh_file import load_mesh
     from shapewright.rendering import LabelledMesh, compose_mesh_sheet
 
     found = (
-        LabelledMesh(load_mesh(one.name, in_child=True), f"{place}. {Path(one.name).name}", _caption(one))
+        LabelledMesh(load_mesh(one.name, in_child=True), f"{place}. {Path(one.name).name}", one.caption)
         for place, one in enumerate(shown, 1)
     )
-    sections: list[tuple[str, Iterable[LabelledMesh]]] = [(f"most like {wanted or 'the query'}", found)]
+    sections: list[tuple[str, Iterable[LabelledMesh]]] = [(f"meshes {wanted}", found)]
     if mesh is not None:
         sections.insert(0, ("query", [LabelledMesh(load_mesh(mesh, in_child=True), mesh.name)]))
     pixels = compose_mesh_sheet(sections, size=SHEET_SIZE, columns=SHEET_COLUMNS)
     sheet.parent.mkdir(parents=True, exist_ok=True)
     save_picture(pixels, sheet)
-
-
-def _caption(one: "RankedMesh") -> str:
-    parts = [] if one.probability is None else [f"{one.probability:.1%}"]
-    return ", ".join([*parts, *([] if one.distance is None else [f"distance {one.distance:.3f}"])])
 
 
 def _document(place: int, one: "RankedMesh") -> dict[str, Any]:

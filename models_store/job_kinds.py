@@ -11,6 +11,8 @@ class JobKind(StrEnum):
     CLASSIFY = "classify"
     ESTIMATE = "estimate"
     RENDER_THUMBNAIL = "render_thumbnail"
+    INDEX_COLLECTION = "index_collection"
+    RETRIEVE = "retrieve"
 
 
 class JobState(StrEnum):

@@ -225,3 +225,43 @@ class EstimationRow(Base):
     mesh_key: Mapped[str | None] = mapped_column(Text)
     created_at: Mapped[datetime]
     job: Mapped[JobRow] = relationship(lazy="joined", innerjoin=True)
+
+
+class CollectionRow(Base):
+    """Meshes that are looked through together; ``index_key``, ``skipped`` and ``seconds`` are set once."""
+
+    __tablename__ = "collections"
+    __table_args__ = (Index(None, "created_at", "id"),)
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    job_id: Mapped[str] = mapped_column(ForeignKey(JobRow.id), unique=True)
+    name: Mapped[str | None] = mapped_column(Text)
+    mesh_ids: Mapped[list[str]]
+    classifier_id: Mapped[str] = mapped_column(ForeignKey(ClassifierRow.id), index=True)
+    index_key: Mapped[str | None] = mapped_column(Text)
+    skipped: Mapped[list[Any] | None]
+    seconds: Mapped[float | None]
+    created_at: Mapped[datetime]
+    job: Mapped[JobRow] = relationship(lazy="joined", innerjoin=True)
+
+
+class RetrievalRow(Base):
+    """Which meshes of a collection come first for a query; ``result`` and ``sheet_key`` are set once.
+
+    Exactly one of ``class_name``, ``model_id`` and ``mesh_id`` is not null.
+    """
+
+    __tablename__ = "retrievals"
+    __table_args__ = (Index(None, "created_at", "id"),)
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    job_id: Mapped[str] = mapped_column(ForeignKey(JobRow.id), unique=True)
+    collection_id: Mapped[str] = mapped_column(ForeignKey(CollectionRow.id), index=True)
+    class_name: Mapped[str | None] = mapped_column(Text)
+    model_id: Mapped[str | None] = mapped_column(ForeignKey(ModelRow.id), index=True)
+    mesh_id: Mapped[str | None] = mapped_column(ForeignKey(MeshRow.id), index=True)
+    settings: Mapped[dict[str, Any]]
+    result: Mapped[dict[str, Any] | None]
+    sheet_key: Mapped[str | None] = mapped_column(Text)
+    created_at: Mapped[datetime]
+    job: Mapped[JobRow] = relationship(lazy="joined", innerjoin=True)

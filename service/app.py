@@ -20,6 +20,7 @@ from service.routes import (
     classes,
     classifications,
     classifiers,
+    collections,
     dashboard,
     estimations,
     health,
@@ -27,6 +28,7 @@ from service.routes import (
     meshes,
     metrics,
     models,
+    retrievals,
 )
 from service.settings import ServiceSettings
 
@@ -62,7 +64,19 @@ def create_app(settings: ServiceSettings | None = None) -> FastAPI:
     app.state.services = services
     install_handlers(app)
     install_openapi(app)
-    parts = (models, classes, meshes, classifiers, classifications, estimations, jobs, health, metrics)
+    parts = (
+        models,
+        classes,
+        meshes,
+        classifiers,
+        classifications,
+        estimations,
+        collections,
+        retrievals,
+        jobs,
+        health,
+        metrics,
+    )
     for part in parts:
         app.include_router(part.router)
     app.include_router(dashboard.router)  # last: it takes any name at the top

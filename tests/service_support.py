@@ -84,7 +84,8 @@ class LiveService:
         return sorted(path for path in (self.data_dir / "artifacts").rglob("*") if path.is_file())
 
     def assert_nothing_left(self) -> None:
-        for resource in ("models", "meshes", "classifiers", "classifications", "estimations", "jobs"):
+        kinds = ("models", "meshes", "classifiers", "classifications", "estimations", "collections", "retrievals")
+        for resource in (*kinds, "jobs"):
             assert self.client.get(f"/v1/{resource}").json()["items"] == [], resource
         assert self.artifacts() == []
 

@@ -1,4 +1,4 @@
-"""What the store knows: models, meshes, classifiers, classifications, estimations.
+"""What the store knows: models, meshes, classifiers, classifications, estimations, collections, retrievals.
 
 Every function takes a session, so that several steps can share one transaction. Models and meshes are addressed
 by their content; the others are asked for together with the job that fills them in.
@@ -14,8 +14,16 @@ from models_store.catalog.classifiers import (
     get_classifier,
     list_classifiers,
     newest_classifier,
+    ready_classifier,
     record_classifier,
     request_classifier,
+)
+from models_store.catalog.collections import (
+    get_collection,
+    index_keys,
+    list_collections,
+    record_collection,
+    request_collection,
 )
 from models_store.catalog.estimations import (
     get_estimation,
@@ -23,7 +31,7 @@ from models_store.catalog.estimations import (
     record_estimation,
     request_estimation,
 )
-from models_store.catalog.meshes import add_mesh, get_mesh, list_meshes, mesh_id, store_mesh
+from models_store.catalog.meshes import add_mesh, get_mesh, list_meshes, mesh_id, mesh_names, store_mesh
 from models_store.catalog.models import (
     add_model,
     get_model,
@@ -33,31 +41,48 @@ from models_store.catalog.models import (
     record_thumbnail,
     request_thumbnail,
 )
+from models_store.catalog.retrievals import (
+    get_retrieval,
+    list_retrievals,
+    record_retrieval,
+    request_retrieval,
+)
 
 __all__ = [
     "add_mesh",
     "add_model",
     "get_classification",
     "get_classifier",
+    "get_collection",
     "get_estimation",
     "get_mesh",
     "get_model",
+    "get_retrieval",
+    "index_keys",
     "list_classes",
     "list_classifications",
     "list_classifiers",
+    "list_collections",
     "list_estimations",
     "list_meshes",
     "list_models",
+    "list_retrievals",
     "mesh_id",
+    "mesh_names",
     "models_of_class",
     "newest_classifier",
+    "ready_classifier",
     "record_classification",
     "record_classifier",
+    "record_collection",
     "record_estimation",
+    "record_retrieval",
     "record_thumbnail",
     "request_classification",
     "request_classifier",
+    "request_collection",
     "request_estimation",
+    "request_retrieval",
     "request_thumbnail",
     "store_mesh",
 ]

@@ -6,10 +6,9 @@ from typing import Any
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from models_store.catalog.classifiers import get_classifier, newest_classifier
+from models_store.catalog.classifiers import ready_classifier
 from models_store.catalog.meshes import get_mesh
 from models_store.catalog.rows import get_row
-from models_store.errors import NotReadyError
 from models_store.jobs import JobKind, create_job, new_id
 from models_store.paging import Page, fetch_page
 from models_store.tables import ClassificationRow
@@ -39,15 +38,7 @@ def request_classification(
         NotReadyError: the classifier is not trained yet, or there is none.
     """
     get_mesh(session, mesh_id)
-    if classifier_id is None:
-        classifier = newest_classifier(session)
-        if classifier is None:
-            raise NotReadyError("no classifier has been trained yet", where="classifier_id")
-    else:
-        classifier = get_classifier(session, classifier_id)
-        if classifier.onnx_key is None:
-            state = classifier.job.state.value
-            raise NotReadyError(f"this classifier is not trained (its job is {state})", where="classifier_id")
+    classifier = ready_classifier(session, classifier_id)
     identifier = new_id()
     payload = {"classification_id": identifier}
     row = ClassificationRow(

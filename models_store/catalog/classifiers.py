@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 
 from models_store.catalog.models import get_model
 from models_store.catalog.rows import get_row
-from models_store.errors import StoreError
+from models_store.errors import NotReadyError, StoreError
 from models_store.jobs import JobKind, create_job, new_id
 from models_store.paging import Page, fetch_page
 from models_store.tables import ClassifierRow
@@ -106,6 +106,24 @@ def newest_classifier(session: Session) -> ClassifierRow | None:
     query = select(ClassifierRow).where(ClassifierRow.onnx_key.is_not(None))
     order = (ClassifierRow.created_at.desc(), ClassifierRow.id.desc())
     return session.scalars(query.order_by(*order).limit(1)).one_or_none()
+
+
+def ready_classifier(session: Session, identifier: str | None) -> ClassifierRow:
+    """The classifier that is to be asked; ``None`` is the newest one that is ready.
+
+    Raises:
+        NotFoundError: there is none with this id.
+        NotReadyError: it is not trained yet, or there is none at all.
+    """
+    if identifier is None:
+        newest = newest_classifier(session)
+        if newest is None:
+            raise NotReadyError("no classifier has been trained yet", where="classifier_id")
+        return newest
+    row = get_classifier(session, identifier)
+    if row.onnx_key is None:
+        raise NotReadyError(f"this classifier is not trained (its job is {row.job.state.value})", where="classifier_id")
+    return row
 
 
 def list_classifiers(session: Session, *, limit: int = 50, cursor: str | None = None) -> Page[ClassifierRow]:

@@ -1,22 +1,26 @@
 """Uploaded meshes: the bytes as they came, and what was read from them as GLB."""
 
 import hashlib
+from collections.abc import Sequence
 from datetime import datetime
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from models_store.artifacts import ArtifactStore
 from models_store.catalog.rows import get_row, insert_once
-from models_store.errors import ArtifactError
+from models_store.errors import ArtifactError, NotFoundError
 from models_store.paging import Page, fetch_page
 from models_store.session import Database
 from models_store.tables import MeshRow
-from models_store.text import storable
+from models_store.text import check_id, storable
 
 if TYPE_CHECKING:
     from shapewright.mesh import TriangleMesh
+
+
+_IDS_A_QUERY: Final = 500
 
 
 def mesh_id(data: bytes) -> str:
@@ -92,6 +96,23 @@ def get_mesh(session: Session, identifier: str) -> MeshRow:
         NotFoundError: there is none.
     """
     return get_row(session, MeshRow, "mesh", identifier)
+
+
+def mesh_names(session: Session, identifiers: Sequence[str]) -> dict[str, str]:
+    """The file name of each of these meshes, whose ids are all different, in their order.
+
+    Raises:
+        NotFoundError: one is not there; the first that is not.
+    """
+    checked = [check_id("mesh", identifier) for identifier in identifiers]
+    found: dict[str, str] = {}
+    for start in range(0, len(checked), _IDS_A_QUERY):
+        query = select(MeshRow.id, MeshRow.file_name).where(MeshRow.id.in_(checked[start : start + _IDS_A_QUERY]))
+        found.update((row.id, row.file_name) for row in session.execute(query))
+    for identifier in checked:
+        if identifier not in found:
+            raise NotFoundError("mesh", identifier)
+    return {identifier: found[identifier] for identifier in checked}
 
 
 def list_meshes(session: Session, *, limit: int = 50, cursor: str | None = None) -> Page[MeshRow]:

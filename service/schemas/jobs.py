@@ -13,6 +13,8 @@ RESULT_PATHS = {
     JobKind.CLASSIFY: "/v1/classifications",
     JobKind.ESTIMATE: "/v1/estimations",
     JobKind.RENDER_THUMBNAIL: "/v1/models",
+    JobKind.INDEX_COLLECTION: "/v1/collections",
+    JobKind.RETRIEVE: "/v1/retrievals",
 }
 """Where the result of each kind of job is found, followed by its id."""
 

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from shapewright.classification.backbone import BACKBONES, Backbone, load_backbone
     from shapewright.classification.array_store import ArrayStore, FolderStore, MemoryStore
     from shapewright.classification.class_instances import gather_instances
-    from shapewright.classification.classifier import UNKNOWN, Classification, Classifier, exemplars_file, load_classifier
+    from shapewright.classification.classifier import UNKNOWN, Classification, Classifier, exemplars_file, files_digest, load_classifier
     from shapewright.classification.collection_index import CollectionIndex
     from shapewright.classification.exemplars import Exemplars
     from shapewright.classification.features import FeatureExtractor
@@ -41,6 +41,7 @@ _HOMES = {
     "TrainingSettings": "settings",
     "UNKNOWN": "classifier",
     "exemplars_file": "classifier",
+    "files_digest": "classifier",
     "gather_instances": "class_instances",
     "index_meshes": "indexing",
     "load_backbone": "backbone",
@@ -71,6 +72,7 @@ __all__ = [
     "TrainingSettings",
     "UNKNOWN",
     "exemplars_file",
+    "files_digest",
     "gather_instances",
     "index_meshes",
     "load_backbone",

@@ -1,5 +1,6 @@
 """Using a classifier: pictures by ONNX Runtime, geometry by exemplars, no torch (paper section 3.2, and beyond)."""
 
+import hashlib
 import json
 from dataclasses import dataclass
 from pathlib import Path
@@ -207,6 +208,19 @@ class Classifier:
 def exemplars_file(onnx: Path) -> Path:
     """Where the exemplars of a classifier's file lie: beside it."""
     return onnx.with_suffix(".exemplars.npz")
+
+
+def files_digest(onnx: bytes, exemplars: Path | None) -> str:
+    """SHA-256 of all that a classifier's answers come from.
+
+    Raises:
+        OSError: the exemplars cannot be read.
+    """
+    digest = hashlib.sha256(onnx)
+    if exemplars is not None:
+        with exemplars.open("rb") as file:
+            digest.update(hashlib.file_digest(file, "sha256").digest())
+    return digest.hexdigest()
 
 
 def load_classifier(path: str | Path, *, threads: int = 2) -> Classifier:

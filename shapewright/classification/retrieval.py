@@ -85,6 +85,12 @@ class RankedMesh:
     probability: float | None
     distance: float | None
 
+    @property
+    def caption(self) -> str:
+        """The parts of the score, for people."""
+        probability = [] if self.probability is None else [f"{self.probability:.1%}"]
+        return ", ".join([*probability, *([] if self.distance is None else [f"distance {self.distance:.3f}"])])
+
 
 def rank(
     index: CollectionIndex,

@@ -379,6 +379,44 @@ def test_an_estimation_can_be_cancelled(new_page: Callable[..., Page], lamp_file
     expect(job).to_have_count(0)
 
 
+def test_meshes_of_a_class_are_found_in_a_collection(new_page: Callable[..., Page], site: Site, tmp_path: Path) -> None:
+    compiled = site.lamp.compile()
+    with connected(site.url, ready_within_s=START_TIMEOUT_S) as client:
+        for number, length in enumerate((0.6, 1.9)):
+            mesh = compiled.instance(compiled.values_from_mapping({"post_length": length}))
+            mesh.save(tmp_path / f"lamp {number}.ply")
+            client.upload("/v1/meshes", tmp_path / f"lamp {number}.ply")
+        crate = ProceduralModel.load(_write_crate_model(tmp_path)).compile()
+        for number, height in enumerate((0.3, 1.5)):
+            crate.instance(crate.values_from_mapping({"height": height})).save(tmp_path / f"crate {number}.ply")
+            client.upload("/v1/meshes", tmp_path / f"crate {number}.ply")
+    page = new_page()
+    page.get_by_role("link", name="Index meshes").click()
+    page.get_by_label("Name").fill("Some furniture")
+    page.get_by_text("Some", exact=True).click()
+    for name in ("lamp 0.ply", "lamp 1.ply", "crate 0.ply", "crate 1.ply"):
+        page.get_by_role("checkbox", name=name).check()
+    page.screenshot(path=tmp_path / "form.png")
+    page.get_by_role("button", name="Start indexing").click()
+    expect(page.get_by_role("heading", name="Some furniture")).to_be_visible(timeout=JOB_TIMEOUT_MS)
+    page.get_by_label("Class", exact=True).select_option("Lamp", timeout=JOB_TIMEOUT_MS)
+    page.get_by_role("button", name="Find meshes").click()
+    ranking = page.get_by_test_id("ranking")
+    expect(ranking).to_be_visible(timeout=JOB_TIMEOUT_MS)
+    names = [row.get_by_role("link").inner_text() for row in ranking.get_by_role("listitem").all()]
+    assert sorted(names[:2]) == ["lamp 0.ply", "lamp 1.ply"]
+    assert len(names) == 4
+    sheet = page.get_by_role("img", name="Lamp: pictures of the first meshes found")
+    expect(sheet).to_be_visible()
+    page.wait_for_function("image => image.naturalWidth > 0", arg=sheet.element_handle())
+    page.screenshot(path=tmp_path / "found.png")
+
+    # The address leads back to the same ranking; a mesh of it opens.
+    again = new_page(page.url.split("/", 3)[3])
+    again.get_by_test_id("ranking").get_by_role("link").first.click()
+    expect(again.get_by_role("heading", name=names[0]).first).to_be_visible()
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_the_page_fits_a_phone(new_page: Callable[..., Page], site: Site, scheme: str, tmp_path: Path) -> None:
     page = new_page(f"#/models/{site.lamp_id}", width=390, height=844, scheme=scheme)

@@ -13,7 +13,6 @@ from shapewright.rendering import images as images_module
 from shapewright.rendering import random_views, render_images, renderer_name
 from shapewright.rendering.images import normalized_positions
 from shapewright.rendering.styles import STYLES
-from shapewright.rendering.views import spread_views
 
 IDENTITY = np.eye(3)[None]
 ONE = np.ones(1)
@@ -245,13 +244,3 @@ def test_bad_input_is_refused_with_its_place(change, where):
     with pytest.raises(RenderingError) as caught:
         render_images(**{**good, **change})
     assert caught.value.where == where
-
-
-@pytest.mark.parametrize("count", [1, 2, 10])
-def test_spread_views_are_rotations_from_directions_that_lie_apart(count: int) -> None:
-    rotations, scales = spread_views(np.random.default_rng(3), count, scale_range=(0.7, 1.0))
-    assert (rotations.shape, scales.shape) == ((count, 3, 3), (count,))
-    np.testing.assert_allclose(rotations @ rotations.transpose(0, 2, 1), np.tile(np.eye(3), (count, 1, 1)), atol=1e-12)
-    np.testing.assert_allclose(np.linalg.det(rotations), 1.0)
-    directions = rotations[:, 2]
-    assert (directions @ directions.T - 2 * np.eye(count)).max() < np.cos(np.deg2rad(30))

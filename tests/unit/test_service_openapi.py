@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterator
 from dataclasses import fields
+from functools import partial
 from typing import get_args
 
 import jsonschema
@@ -14,13 +15,16 @@ from schemathesis import GenerationMode
 from schemathesis.checks import load_all_checks
 from service_support import LiveService, box, running, tetrahedron
 
+from models_store import catalog
 from models_store.job_kinds import JobKind
 from models_store.jobs import TASK_NAMES
 from service.openapi import FOLDER, stale
 from service.schemas.classifiers import TrainingSettingsIn
 from service.schemas.estimations import EstimationResultOut, EstimationSettingsIn
 from service.schemas.jobs import RESULT_PATHS
+from service.schemas.retrievals import Evidence
 from shapewright.classification import TrainingSettings
+from shapewright.classification.retrieval import EVIDENCE
 from shapewright.distances.alignment import Pose
 from shapewright.estimation import Distances, Estimation, EstimationSettings, ParameterEstimate, Stage
 from shapewright.estimation.settings import EstimatorName
@@ -73,6 +77,10 @@ def test_an_estimation_of_the_library_fits_the_answer() -> None:
     assert EstimationResultOut.model_validate(document).model_dump() == document
 
 
+def test_kinds_of_evidence_are_those_of_the_library() -> None:
+    assert get_args(Evidence) == EVIDENCE
+
+
 def test_every_kind_of_job_has_a_task_and_a_place_for_its_result() -> None:
     assert set(TASK_NAMES) == set(RESULT_PATHS) == set(JobKind)
 
@@ -90,6 +98,30 @@ def known_ids(filled_service: LiveService) -> dict[str, str]:
     model, crate = live.add_model("box"), live.add_model("crate")
     mesh = live.upload(tetrahedron()).json()
     classifier = live.client.post("/v1/classifiers", json={"model_ids": [model["id"], crate["id"]]}).json()
+    live.services.artifacts.put("classifiers/one.onnx", b"onnx")
+    live.work(
+        classifier["job"]["id"],
+        partial(
+            catalog.record_classifier,
+            identifier=classifier["id"],
+            onnx_key="classifiers/one.onnx",
+            class_names=["box", "crate"],
+            metrics={},
+            seconds=1.0,
+        ),
+    )
+    collection = live.client.post("/v1/collections", json={"mesh_ids": [mesh["id"]]}).json()
+    live.work(
+        collection["job"]["id"],
+        partial(
+            catalog.record_collection,
+            identifier=collection["id"],
+            index_key="collections/one.npz",
+            skipped=[],
+            seconds=1.0,
+        ),
+    )
+    retrieval = live.client.post("/v1/retrievals", json={"collection_id": collection["id"], "class_name": "box"}).json()
     estimation = live.client.post("/v1/estimations", json={"mesh_id": mesh["id"], "model_id": model["id"]}).json()
     live.client.post(f"{estimation['job']['url']}/cancel").raise_for_status()  # so that its stream ends
     return {
@@ -97,6 +129,8 @@ def known_ids(filled_service: LiveService) -> dict[str, str]:
         "meshes": mesh["id"],
         "classifiers": classifier["id"],
         "estimations": estimation["id"],
+        "collections": collection["id"],
+        "retrievals": retrieval["id"],
         "jobs": estimation["job"]["id"],
     }
 

@@ -7,7 +7,9 @@ from models_store.job_kinds import JobKind
 from workers.context import JobContext, Outcome
 from workers.tasks.classify import classify
 from workers.tasks.estimate import estimate
+from workers.tasks.index_collection import index_collection
 from workers.tasks.render_thumbnail import render_thumbnail
+from workers.tasks.retrieve import retrieve
 from workers.tasks.train_classifier import train_classifier
 
 TASKS: Final[Mapping[JobKind, Callable[[JobContext], Outcome]]] = {
@@ -15,4 +17,6 @@ TASKS: Final[Mapping[JobKind, Callable[[JobContext], Outcome]]] = {
     JobKind.CLASSIFY: classify,
     JobKind.ESTIMATE: estimate,
     JobKind.RENDER_THUMBNAIL: render_thumbnail,
+    JobKind.INDEX_COLLECTION: index_collection,
+    JobKind.RETRIEVE: retrieve,
 }

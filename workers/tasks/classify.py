@@ -2,7 +2,7 @@
 
 from functools import partial
 from io import BytesIO
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 import structlog
@@ -10,19 +10,13 @@ from jaxtyping import UInt8
 
 from models_store import catalog
 from models_store.errors import ArtifactError
+from workers.classifiers import stored_classifier
 from workers.context import JobContext, Outcome
 from workers.finite import finite
-
-if TYPE_CHECKING:
-    from shapewright.classification import Classifier
-
 
 log = structlog.get_logger(__name__)
 
 _PICTURES_IN_A_ROW: Final = 5
-
-_kept: "Final[dict[str, Classifier]]" = {}
-"""The classifier of the last job by its key, as most jobs ask the same one; keys never change their content."""
 
 
 def classify(context: JobContext) -> Outcome:
@@ -30,11 +24,10 @@ def classify(context: JobContext) -> Outcome:
     identifier = str(context.claim.payload["classification_id"])
     with context.database.reading() as session:
         row = catalog.get_classification(session, identifier)
-        trained = catalog.get_classifier(session, row.classifier_id)
     context.progress.report(0.0, "reading the mesh")
     mesh = context.load_query(row.mesh_id)
     context.progress.report(0.3, "reading the classifier")
-    classifier = _classifier(context, str(trained.onnx_key), trained.exemplars_key)
+    classifier = stored_classifier(context, row.classifier_id).classifier
     context.progress.report(0.6, "looking at the mesh")
     rng = np.random.default_rng(row.settings.get("seed", 0))
     answer = classifier.classify(mesh, views=row.settings.get("views", 10), rng=rng)
@@ -53,19 +46,6 @@ def classify(context: JobContext) -> Outcome:
     key = _keep_pictures(context, identifier, answer.images)
     record = partial(catalog.record_classification, identifier=identifier, result=result, pictures_key=key)
     return Outcome(record, () if key is None else (key,))
-
-
-def _classifier(context: JobContext, onnx_key: str, exemplars_key: str | None) -> "Classifier":
-    from shapewright.classification import Classifier
-    from shapewright.classification.exemplars import Exemplars
-
-    if onnx_key not in _kept:
-        _kept.clear()
-        exemplars = None
-        if exemplars_key is not None:
-            exemplars = Exemplars.load(context.artifacts.local_copy(exemplars_key, context.settings.data_dir / "cache"))
-        _kept[onnx_key] = Classifier(context.artifacts.get(onnx_key), exemplars=exemplars)
-    return _kept[onnx_key]
 
 
 def _keep_pictures(context: JobContext, identifier: str, images: UInt8[np.ndarray, "N H W 3"]) -> str | None:

@@ -1,7 +1,7 @@
 """Classifiers know what is unknown, classifications show what was looked at
 
 Revision ID: 20261125_evidence
-Revises: 20261123_classes
+Revises: 20261125_collections
 Create Date: 2026-11-25 07:20:00
 """
 
@@ -9,7 +9,7 @@ import sqlalchemy as sa
 from alembic import op
 
 revision = "20261125_evidence"
-down_revision = "20261123_classes"
+down_revision = "20261125_collections"
 branch_labels = None
 depends_on = None
 

@@ -56,6 +56,20 @@ describe("requests", () => {
     expect(requests.map(({ url }) => new URL(url).searchParams.get("cursor"))).toEqual([null, "n"]);
   });
 
+  it("find the ids of all meshes, page by page", async () => {
+    const { api, requests } = fakeService((_, count) =>
+      json(count === 1 ? { items: [{ id: "a" }], next_cursor: "n" } : { items: [{ id: "b" }], next_cursor: null }),
+    );
+    expect(await api.listMeshIds()).toEqual(["a", "b"]);
+    expect(requests.map(({ url }) => new URL(url).pathname)).toEqual(["/v1/meshes", "/v1/meshes"]);
+  });
+
+  it("ask for the meshes of a class", async () => {
+    const { api, requests } = fakeService(() => json({ id: "r" }, 202));
+    await api.retrieve({ collectionId: "c", className: "fish", evidence: "panorama" });
+    expect(await requests[0]?.json()).toMatchObject({ collection_id: "c", class_name: "fish", evidence: "panorama" });
+  });
+
   it("give back the values that a variation was made with", async () => {
     const { api, requests } = fakeService(
       () => new Response(new Uint8Array([1, 2, 3]), { headers: { "X-Shapewright-Values": '{"stem_length": 1.5}' } }),

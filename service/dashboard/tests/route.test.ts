@@ -10,6 +10,8 @@ describe("routes", () => {
     { kind: "model", id: "3fa9", values: { stem_length: 1.25, "odd name&": 0.5 } },
     { kind: "mesh", id: "a/b c" },
     { kind: "estimation", id: "e-1" },
+    { kind: "collection", id: "new" },
+    { kind: "retrieval", id: "r-1" },
   ];
   it.each(routes)("come back from the address as they went in: %j", (route) => {
     expect(parseRoute(formatRoute(route))).toEqual(route);

@@ -3,7 +3,20 @@ import createClient from "openapi-fetch";
 
 import { ApiError, isAbort } from "./problem";
 import type { paths } from "./schema";
-import type { Accepted, Classification, Classifier, Estimation, Job, Mesh, Model, Page } from "./types";
+import type {
+  Accepted,
+  Classification,
+  Classifier,
+  Collection,
+  CollectionDetail,
+  Estimation,
+  Evidence,
+  Job,
+  Mesh,
+  Model,
+  Page,
+  Retrieval,
+} from "./types";
 
 export const PAGE_SIZE = 100;
 
@@ -91,6 +104,18 @@ export function createApi(baseUrl: string, fetcher?: (request: Request) => Promi
       return body(http.GET("/v1/meshes", { params: { query: cursor ? { ...page, cursor } : page } }));
     },
 
+    /** The ids of all meshes, page by page. */
+    async listMeshIds(): Promise<string[]> {
+      const ids: string[] = [];
+      let cursor: string | null = null;
+      do {
+        const next: Page<Mesh> = await this.listMeshes(cursor);
+        ids.push(...next.items.map(({ id }) => id));
+        cursor = next.next_cursor ?? null;
+      } while (cursor !== null);
+      return ids;
+    },
+
     async getMesh(id: string): Promise<Mesh> {
       return body(http.GET("/v1/meshes/{id}", { params: { path: { id } } }));
     },
@@ -172,6 +197,51 @@ export function createApi(baseUrl: string, fetcher?: (request: Request) => Promi
       return body(
         http.POST("/v1/estimations", {
           body: { mesh_id: input.meshId, ...named, settings: { samples: input.samples } },
+        }),
+      );
+    },
+
+    async listCollections(): Promise<Page<Collection>> {
+      return body(http.GET("/v1/collections", { params: { query: page } }));
+    },
+
+    async getCollection(id: string): Promise<CollectionDetail> {
+      return body(http.GET("/v1/collections/{id}", { params: { path: { id } } }));
+    },
+
+    /** Index meshes, so that they can be looked through. */
+    async createCollection(input: {
+      name: string | null;
+      meshIds: string[];
+      classifierId: string | null;
+    }): Promise<Accepted> {
+      return body(
+        http.POST("/v1/collections", {
+          body: { name: input.name, mesh_ids: input.meshIds, classifier_id: input.classifierId },
+        }),
+      );
+    },
+
+    async listRetrievals(): Promise<Page<Retrieval>> {
+      return body(http.GET("/v1/retrievals", { params: { query: page } }));
+    },
+
+    async getRetrieval(id: string): Promise<Retrieval> {
+      return body(http.GET("/v1/retrievals/{id}", { params: { path: { id } } }));
+    },
+
+    /** Order the meshes of a collection by how surely they are of a class. */
+    async retrieve(input: { collectionId: string; className: string; evidence: Evidence }): Promise<Accepted> {
+      return body(
+        http.POST("/v1/retrievals", {
+          body: {
+            collection_id: input.collectionId,
+            class_name: input.className,
+            evidence: input.evidence,
+            limit: 50,
+            instances: 500,
+            seed: 0,
+          },
         }),
       );
     },

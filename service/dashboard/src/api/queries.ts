@@ -4,7 +4,7 @@ import type { QueryClient } from "@tanstack/react-query";
 
 import { createApi } from "./client";
 import { isTerminal } from "./types";
-import type { Estimation, Job, Mesh, Model } from "./types";
+import type { CollectionDetail, Estimation, Job, Mesh, Model, Retrieval } from "./types";
 
 export const api = createApi(globalThis.location?.origin ?? "http://localhost");
 
@@ -18,6 +18,10 @@ export const keys = {
   classifications: ["classifications"],
   estimations: ["estimations"],
   estimation: (id: string) => ["estimations", id],
+  collections: ["collections"],
+  collection: (id: string) => ["collections", id],
+  retrievals: ["retrievals"],
+  retrieval: (id: string) => ["retrievals", id],
   jobs: ["jobs"],
   job: (id: string) => ["jobs", id],
 } as const;
@@ -87,6 +91,30 @@ export function useEstimation(id: string | null) {
   });
 }
 
+export function useCollections() {
+  return useQuery({ queryKey: keys.collections, queryFn: () => api.listCollections() });
+}
+
+export function useCollection(id: string | null) {
+  return useQuery<CollectionDetail>({
+    queryKey: keys.collection(id ?? ""),
+    queryFn: () => api.getCollection(id ?? ""),
+    enabled: id !== null,
+  });
+}
+
+export function useRetrievals() {
+  return useQuery({ queryKey: keys.retrievals, queryFn: () => api.listRetrievals() });
+}
+
+export function useRetrieval(id: string | null) {
+  return useQuery<Retrieval>({
+    queryKey: keys.retrieval(id ?? ""),
+    queryFn: () => api.getRetrieval(id ?? ""),
+    enabled: id !== null,
+  });
+}
+
 export function useJobs() {
   return useQuery({
     queryKey: keys.jobs,
@@ -102,9 +130,15 @@ export function useJobQuery(id: string | null) {
 /** A job ended or was made: whatever it may have changed is asked for again. */
 export async function refreshAfterJob(client: QueryClient): Promise<void> {
   await Promise.all(
-    [keys.jobs, keys.classifiers, keys.classifications, keys.estimations, keys.models].map((queryKey) =>
-      client.invalidateQueries({ queryKey }),
-    ),
+    [
+      keys.jobs,
+      keys.classifiers,
+      keys.classifications,
+      keys.estimations,
+      keys.collections,
+      keys.retrievals,
+      keys.models,
+    ].map((queryKey) => client.invalidateQueries({ queryKey })),
   );
 }
 
@@ -118,6 +152,12 @@ export const useTrain = () => useStarter(api.trainClassifier);
 export const useClassify = () =>
   useStarter((input: { meshId: string; classifierId: string }) => api.classify(input.meshId, input.classifierId));
 export const useEstimate = () => useStarter(api.estimate);
+/** Index the named meshes, or all there are. */
+export const useCreateCollection = () =>
+  useStarter(async (input: { name: string | null; meshIds: string[] | "all"; classifierId: string | null }) =>
+    api.createCollection({ ...input, meshIds: input.meshIds === "all" ? await api.listMeshIds() : input.meshIds }),
+  );
+export const useRetrieve = () => useStarter(api.retrieve);
 export const useCancel = () => useStarter(api.cancelJob);
 
 export function useUploadMesh() {

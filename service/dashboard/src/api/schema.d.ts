@@ -386,6 +386,114 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/v1/collections": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Collections
+         * @description List the collections, newest first.
+         */
+        get: operations["list_collections"];
+        put?: never;
+        /**
+         * Create Collection
+         * @description Index meshes, so that they can be looked through; 409 if the classifier is not trained yet.
+         */
+        post: operations["create_collection"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/collections/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Collection
+         * @description Look at a collection.
+         */
+        get: operations["get_collection"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/retrievals": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Retrievals
+         * @description List the retrievals, newest first.
+         */
+        get: operations["list_retrievals"];
+        put?: never;
+        /**
+         * Create Retrieval
+         * @description Order the meshes of a collection by their likeness to a class, a model or a mesh; 409 if it has no index yet.
+         */
+        post: operations["create_retrieval"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/retrievals/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Retrieval
+         * @description Look at a retrieval.
+         */
+        get: operations["get_retrieval"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/retrievals/{id}/contact-sheet": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Contact Sheet
+         * @description Pictures of the first meshes; 404 until there are some.
+         */
+        get: operations["get_contact_sheet"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/v1/jobs": {
         parameters: {
             query?: never;
@@ -788,6 +896,107 @@ export interface components {
             next_cursor: string | null;
         };
         /**
+         * CollectionDetailOut
+         * @description A collection with its meshes.
+         */
+        CollectionDetailOut: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string | null;
+            /** @description Of its indexing; it can be looked through once that has succeeded. */
+            state: components["schemas"]["JobState"];
+            /** Classifier Id */
+            classifier_id: string;
+            /** Mesh Count */
+            mesh_count: number;
+            /**
+             * Skipped Count
+             * @description Meshes without a usable surface; null until it is indexed.
+             */
+            skipped_count: number | null;
+            /**
+             * Seconds
+             * @description How long the indexing took.
+             */
+            seconds: number | null;
+            /** Job Id */
+            job_id: string;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /** Mesh Ids */
+            mesh_ids: string[];
+            /**
+             * Skipped
+             * @description null until it is indexed.
+             */
+            skipped: components["schemas"]["SkippedMeshOut"][] | null;
+        };
+        /**
+         * CollectionIn
+         * @description Meshes to index.
+         */
+        CollectionIn: {
+            /** Name */
+            name?: string | null;
+            /** Mesh Ids */
+            mesh_ids: string[];
+            /**
+             * Classifier Id
+             * @description null: the newest that succeeded.
+             */
+            classifier_id?: string | null;
+        };
+        /**
+         * CollectionOut
+         * @description A collection, asked for or indexed.
+         */
+        CollectionOut: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string | null;
+            /** @description Of its indexing; it can be looked through once that has succeeded. */
+            state: components["schemas"]["JobState"];
+            /** Classifier Id */
+            classifier_id: string;
+            /** Mesh Count */
+            mesh_count: number;
+            /**
+             * Skipped Count
+             * @description Meshes without a usable surface; null until it is indexed.
+             */
+            skipped_count: number | null;
+            /**
+             * Seconds
+             * @description How long the indexing took.
+             */
+            seconds: number | null;
+            /** Job Id */
+            job_id: string;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+        };
+        /**
+         * CollectionPageOut
+         * @description A page of collections.
+         */
+        CollectionPageOut: {
+            /** Items */
+            items: components["schemas"]["CollectionOut"][];
+            /**
+             * Next Cursor
+             * @description Give it as `cursor` to read on; null on the last page.
+             */
+            next_cursor: string | null;
+        };
+        /**
          * ConditionOut
          * @description Holds where x of a parameter lies in a range; of a parameter that is not active it does not hold.
          */
@@ -1021,7 +1230,7 @@ export interface components {
          * @description What a job does.
          * @enum {string}
          */
-        JobKind: "train_classifier" | "classify" | "estimate" | "render_thumbnail";
+        JobKind: "train_classifier" | "classify" | "estimate" | "render_thumbnail" | "index_collection" | "retrieve";
         /**
          * JobOut
          * @description A piece of long work, as its row says.
@@ -1563,6 +1772,160 @@ export interface components {
             artifacts: boolean;
             /** Broker */
             broker: boolean;
+        };
+        /**
+         * RetrievalIn
+         * @description A collection and exactly one query: a class, a model or a mesh.
+         */
+        RetrievalIn: {
+            /** Collection Id */
+            collection_id: string;
+            /**
+             * Class Name
+             * @description Find meshes of this class, one that the collection's classifier knows;
+             */
+            class_name?: string | null;
+            /**
+             * Model Id
+             * @description or meshes like instances of this model;
+             */
+            model_id?: string | null;
+            /**
+             * Mesh Id
+             * @description or meshes like this one, which need not be in the collection.
+             */
+            mesh_id?: string | null;
+            /**
+             * Evidence
+             * @description The classifier's probabilities, panorama distances, or both.
+             * @default combined
+             * @enum {string}
+             */
+            evidence: "probabilities" | "panorama" | "combined";
+            /**
+             * Limit
+             * @description Most meshes of the result.
+             * @default 50
+             */
+            limit: number;
+            /**
+             * Instances
+             * @description Random instances that distances to a class or model are measured to, beside the base instances.
+             * @default 500
+             */
+            instances: number;
+            /**
+             * Seed
+             * @default 0
+             */
+            seed: number;
+        };
+        /**
+         * RetrievalOut
+         * @description A retrieval, asked for or done.
+         */
+        RetrievalOut: {
+            /** Id */
+            id: string;
+            state: components["schemas"]["JobState"];
+            /** Collection Id */
+            collection_id: string;
+            /** Class Name */
+            class_name: string | null;
+            /** Model Id */
+            model_id: string | null;
+            /** Mesh Id */
+            mesh_id: string | null;
+            /**
+             * Evidence
+             * @enum {string}
+             */
+            evidence: "probabilities" | "panorama" | "combined";
+            /** Limit */
+            limit: number;
+            /** Instances */
+            instances: number;
+            /** Seed */
+            seed: number;
+            result: components["schemas"]["RetrievalResultOut"] | null;
+            /**
+             * Contact Sheet Url
+             * @description A PNG of the first meshes; null until there is one.
+             */
+            contact_sheet_url: string | null;
+            /** Job Id */
+            job_id: string;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+        };
+        /**
+         * RetrievalPageOut
+         * @description A page of retrievals.
+         */
+        RetrievalPageOut: {
+            /** Items */
+            items: components["schemas"]["RetrievalOut"][];
+            /**
+             * Next Cursor
+             * @description Give it as `cursor` to read on; null on the last page.
+             */
+            next_cursor: string | null;
+        };
+        /**
+         * RetrievalResultOut
+         * @description The answer.
+         */
+        RetrievalResultOut: {
+            /**
+             * Mesh Count
+             * @description Meshes that were ranked.
+             */
+            mesh_count: number;
+            /**
+             * Items
+             * @description The first of them, best first.
+             */
+            items: components["schemas"]["RetrievedMeshOut"][];
+            /** Seconds */
+            seconds: number;
+        };
+        /**
+         * RetrievedMeshOut
+         * @description One place of the ranking.
+         */
+        RetrievedMeshOut: {
+            /** Mesh Id */
+            mesh_id: string;
+            /** File Name */
+            file_name: string;
+            /**
+             * Score
+             * @description What the ranking is ordered by; comparable within one retrieval only.
+             */
+            score: number;
+            /**
+             * Probability
+             * @description Of the class, or that mesh and query are of one class; null if only distances are asked for.
+             */
+            probability: number | null;
+            /**
+             * Distance
+             * @description Panorama distance to the query; null if only probabilities are asked for.
+             */
+            distance: number | null;
+        };
+        /**
+         * SkippedMeshOut
+         * @description A mesh that is not in the index, and why.
+         */
+        SkippedMeshOut: {
+            /** Mesh Id */
+            mesh_id: string;
+            /** Reason */
+            reason: string;
         };
         /**
          * StageOut
@@ -2797,6 +3160,357 @@ export interface operations {
                 };
                 content: {
                     "model/gltf-binary": string;
+                };
+            };
+            /** @description Not modified. */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such thing. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    list_collections: {
+        parameters: {
+            query?: {
+                /** @description Most items of a page. */
+                limit?: number;
+                /** @description `next_cursor` of the page before; none for the first page. */
+                cursor?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CollectionPageOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    create_collection: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CollectionIn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AcceptedOut"];
+                };
+            };
+            /** @description Not in this state. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The body is too large. */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The body is of a type that is not taken. */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description A store does not answer. */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description There is no space left; nothing was kept. */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    get_collection: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CollectionDetailOut"];
+                };
+            };
+            /** @description There is no such thing. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    list_retrievals: {
+        parameters: {
+            query?: {
+                /** @description Most items of a page. */
+                limit?: number;
+                /** @description `next_cursor` of the page before; none for the first page. */
+                cursor?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RetrievalPageOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    create_retrieval: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RetrievalIn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AcceptedOut"];
+                };
+            };
+            /** @description Not in this state. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The body is too large. */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The body is of a type that is not taken. */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description A store does not answer. */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description There is no space left; nothing was kept. */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    get_retrieval: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RetrievalOut"];
+                };
+            };
+            /** @description There is no such thing. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    get_contact_sheet: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Pictures of the first meshes, with names and scores. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/png": string;
                 };
             };
             /** @description Not modified. */

@@ -15,6 +15,11 @@ export type Classification = Schemas["ClassificationOut"];
 export type Estimation = Schemas["EstimationOut"];
 export type EstimationResult = NonNullable<Estimation["result"]>;
 export type ParameterEstimate = EstimationResult["parameters"][number];
+export type Collection = Schemas["CollectionOut"];
+export type CollectionDetail = Schemas["CollectionDetailOut"];
+export type Retrieval = Schemas["RetrievalOut"];
+export type RetrievedMesh = NonNullable<Retrieval["result"]>["items"][number];
+export type Evidence = Retrieval["evidence"];
 export type Accepted = Schemas["AcceptedOut"];
 
 export interface Page<Item> {

@@ -1,12 +1,17 @@
 import { useCallback, useRef, useState } from "react";
 
 import { useModels, useUploadMesh, useUploadModel } from "../api/queries";
+import { useCollectionSession } from "../hooks/useCollectionSession";
 import { useMeshSession } from "../hooks/useMeshSession";
 import { useModelSession } from "../hooks/useModelSession";
 import { navigate, useRoute } from "../hooks/useRoute";
 import { byClass } from "../lib/classes";
 import { count, humanize } from "../lib/format";
 import { MESH_ACCEPT, isModelDocument } from "../lib/meshFiles";
+import { CollectionForm } from "./CollectionForm";
+import { CollectionInspector } from "./CollectionInspector";
+import { CollectionList } from "./CollectionList";
+import { ContactSheet } from "./ContactSheet";
 import { DropTarget } from "./DropTarget";
 import { Header } from "./Header";
 import { JobList } from "./JobList";
@@ -37,6 +42,8 @@ export function App() {
   const modelSession = useModelSession(model, route.kind === "model" ? route.values : undefined);
   const meshSession = useMeshSession(route);
   const showsMesh = route.kind === "mesh" || route.kind === "estimation";
+  const collectionSession = useCollectionSession(route);
+  const showsCollection = route.kind === "collection" || route.kind === "retrieval";
 
   const { mutate: sendMesh } = upload;
   const { mutate: sendModel } = uploadModel;
@@ -85,7 +92,7 @@ export function App() {
       </a>
       <Header />
       <aside className="library" aria-label="Library">
-        <ModelList selectedId={showsMesh ? null : (model?.id ?? null)} />
+        <ModelList selectedId={showsMesh || showsCollection ? null : (model?.id ?? null)} />
         <MeshList
           selectedId={showsMesh ? meshSession.meshId : null}
           onChoose={() => picker.current?.click()}
@@ -93,6 +100,7 @@ export function App() {
           uploadError={uploadError}
           onDismissError={() => setUploadError(null)}
         />
+        <CollectionList selectedId={collectionSession.collectionId} />
         <input
           ref={picker}
           type="file"
@@ -108,20 +116,39 @@ export function App() {
         />
       </aside>
       <main className="centre">
-        <Stage
-          {...stage}
-          empty={
-            models.isPending || models.error ? null : (
-              <p className="muted">
-                {modelMissing ? "This model is not there (any more)." : "Add a model or upload a mesh to see it here."}
-              </p>
-            )
-          }
-        />
+        {showsCollection ? (
+          <ContactSheet retrieval={collectionSession.retrieval} />
+        ) : (
+          <Stage
+            {...stage}
+            empty={
+              models.isPending || models.error ? null : (
+                <p className="muted">
+                  {modelMissing ? "This model is not there (any more)." : "Add a model or upload a mesh to see it here."}
+                </p>
+              )
+            }
+          />
+        )}
         <JobList />
       </main>
       <aside className="panel" id="inspector" tabIndex={-1} aria-label="Controls">
-        {showsMesh ? (
+        {showsCollection ? (
+          collectionSession.isNew ? (
+            <CollectionForm />
+          ) : collectionSession.collection ? (
+            <CollectionInspector
+              key={collectionSession.collection.id}
+              collection={collectionSession.collection}
+              retrieval={collectionSession.retrieval}
+              retrievals={collectionSession.retrievals}
+            />
+          ) : collectionSession.error ? (
+            <Problem error={collectionSession.error} />
+          ) : (
+            <PanelSkeleton />
+          )
+        ) : showsMesh ? (
           meshSession.mesh ? (
             <MeshInspector
               key={meshSession.mesh.id}
@@ -174,6 +201,7 @@ function Welcome() {
         <li>Add procedural models: JSON documents, one or several for each class of objects.</li>
         <li>Train a classifier on them. Their random variations are all it needs.</li>
         <li>Upload an unknown mesh, ask what it is, and let the models of its class rebuild it.</li>
+        <li>Or index many meshes, and find those of a class.</li>
       </ol>
     </section>
   );

@@ -60,6 +60,8 @@ function took(job: Job, now: Date): string {
 function ResultLink({ job, classifications }: { job: Job; classifications: Classification[] }) {
   const id = job.result_url?.split("/").pop();
   if (!id) return null;
+  if (job.kind === "index_collection") return <a href={formatRoute({ kind: "collection", id })}>Open</a>;
+  if (job.kind === "retrieve") return <a href={formatRoute({ kind: "retrieval", id })}>Open</a>;
   if (job.kind === "estimate") return <a href={formatRoute({ kind: "estimation", id })}>Open</a>;
   const meshId = classifications.find((classification) => classification.id === id)?.mesh_id;
   if (job.kind === "classify" && meshId) return <a href={formatRoute({ kind: "mesh", id: meshId })}>Open</a>;

@@ -81,6 +81,8 @@ const KINDS: Record<JobKind, string> = {
   classify: "Classify",
   estimate: "Estimate",
   render_thumbnail: "Draw thumbnail",
+  index_collection: "Index meshes",
+  retrieve: "Find meshes",
 };
 
 export function jobKind(kind: JobKind): string {

@@ -4,11 +4,23 @@ export type Route =
   | { kind: "home" }
   | { kind: "model"; id: string; values?: Record<string, number> }
   | { kind: "mesh"; id: string }
-  | { kind: "estimation"; id: string };
+  | { kind: "estimation"; id: string }
+  /** A collection; `new` is the form that makes one. */
+  | { kind: "collection"; id: string }
+  | { kind: "retrieval"; id: string };
 
-const SEGMENTS = { models: "model", meshes: "mesh", estimations: "estimation" } as const;
+const SEGMENTS = {
+  models: "model",
+  meshes: "mesh",
+  estimations: "estimation",
+  collections: "collection",
+  retrievals: "retrieval",
+} as const;
 
-/** Read `#/models/<id>?stem_length=1.2`, `#/meshes/<id>` or `#/estimations/<id>`; anything else is home. */
+/** In place of a collection's id: there is none yet. */
+export const NEW = "new";
+
+/** Read `#/models/<id>?stem_length=1.2`, `#/meshes/<id>`, `#/estimations/<id>` and the like; anything else is home. */
 export function parseRoute(hash: string): Route {
   const [path = "", query = ""] = hash.replace(/^#\/?/, "").split("?", 2);
   const [segment = "", rawId = "", ...rest] = path.split("/");
@@ -41,5 +53,9 @@ export function formatRoute(route: Route): string {
       return `#/meshes/${encodeURIComponent(route.id)}`;
     case "estimation":
       return `#/estimations/${encodeURIComponent(route.id)}`;
+    case "collection":
+      return `#/collections/${encodeURIComponent(route.id)}`;
+    case "retrieval":
+      return `#/retrievals/${encodeURIComponent(route.id)}`;
   }
 }
