@@ -118,7 +118,10 @@ def _lite0(
     from shapewright.classification.quantized_graph import quantized_features_graph
 
     scaling = {"pixel_mean": efficientnet_lite.PIXEL_MEAN, "pixel_scale": efficientnet_lite.PIXEL_SCALE}
-    graph = features_graph(layers, **scaling) if ranges is None else quantized_features_graph(layers, ranges, **scaling)
+    if ranges is None:
+        graph = features_graph(efficientnet_lite.network_steps(layers), **scaling)
+    else:
+        graph = quantized_features_graph(layers, ranges, **scaling)
     return Backbone(
         name=name,
         weights=weights,
