@@ -16,6 +16,7 @@ import numpy as np
 
 from shapewright.classification import efficientnet_lite
 from shapewright.classification.efficientnet_lite import Convolution
+from shapewright.classification.picture_sizes import PictureSizes
 from shapewright.errors import ClassifierError
 
 if TYPE_CHECKING:
@@ -54,6 +55,19 @@ class Backbone:
         return f"{self.name}-{hashlib.sha256(self.graph).hexdigest()[:12]}"
 
 
+@dataclass(frozen=True)
+class BackboneKind:
+    """An entry of :data:`BACKBONES`.
+
+    Args:
+        make: the backbone.
+        sizes: pictures that it takes.
+    """
+
+    make: Callable[[], Backbone]
+    sizes: PictureSizes
+
+
 def load_backbone(name: str = DEFAULT_BACKBONE) -> Backbone:
     """A backbone by name, kept for the life of the process after its first use.
 
@@ -67,7 +81,7 @@ def load_backbone(name: str = DEFAULT_BACKBONE) -> Backbone:
 
 @lru_cache(maxsize=4)
 def _load(name: str) -> Backbone:
-    return BACKBONES[name]()
+    return BACKBONES[name].make()
 
 
 def efficientnet_lite0_layers() -> tuple[tuple[Convolution, ...], Path]:
@@ -134,10 +148,12 @@ def _lite0(
     )
 
 
-BACKBONES: dict[str, Callable[[], Backbone]] = {
-    DEFAULT_BACKBONE: _efficientnet_lite0_int8,
-    "efficientnet_lite0": _efficientnet_lite0,
-    "efficientnet_lite0_random": _efficientnet_lite0_random,
+_LITE_SIZES = PictureSizes(efficientnet_lite.IMAGE_SIZE)
+
+BACKBONES: dict[str, BackboneKind] = {
+    DEFAULT_BACKBONE: BackboneKind(_efficientnet_lite0_int8, _LITE_SIZES),
+    "efficientnet_lite0": BackboneKind(_efficientnet_lite0, _LITE_SIZES),
+    "efficientnet_lite0_random": BackboneKind(_efficientnet_lite0_random, _LITE_SIZES),
 }
 """What :func:`load_backbone` knows. The default is the network in 8-bit integers, the second the same in floating
 point; the random one is the control of every claim about pretraining."""

@@ -62,7 +62,7 @@ def test_the_graph_takes_bytes_and_is_the_same_each_time():
     assert model.graph.input[0].type.tensor_type.elem_type == onnx.TensorProto.UINT8
     assert len(backbone.weights_sha256) == 64
     assert backbone.weights_sha256.startswith("57934424"), "the digits in the weights' file name"
-    assert BACKBONES["efficientnet_lite0"]().graph == backbone.graph
+    assert BACKBONES["efficientnet_lite0"].make().graph == backbone.graph
     assert load_backbone() is backbone
 
 
