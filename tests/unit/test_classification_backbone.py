@@ -7,7 +7,7 @@ import simple_shapes
 import torch
 
 from shapewright.classification import BACKBONES, FeatureExtractor, load_backbone
-from shapewright.classification.backbone import efficientnet_lite0_layers
+from shapewright.classification.backbone import WEIGHTS_FOLDER, efficientnet_lite0_layers
 from shapewright.classification.efficientnet_lite import layers_from_state
 from shapewright.classification.torch_network import TorchBackbone
 from shapewright.errors import ClassifierError
@@ -62,7 +62,7 @@ def test_the_graph_takes_bytes_and_is_the_same_each_time():
     assert model.graph.input[0].type.tensor_type.elem_type == onnx.TensorProto.UINT8
     assert len(backbone.weights_sha256) == 64
     assert backbone.weights_sha256.startswith("57934424"), "the digits in the weights' file name"
-    assert BACKBONES["efficientnet_lite0"].make().graph == backbone.graph
+    assert BACKBONES["efficientnet_lite0"].make(WEIGHTS_FOLDER).graph == backbone.graph
     assert load_backbone() is backbone
 
 
