@@ -77,6 +77,7 @@ def test_a_training_is_accepted_and_its_classifier_comes(service: LiveService) -
         ({"model_ids": []}, "model_ids"),
         ({"model_ids": ["BOX"], "settings": {"variations": 0}}, "settings.variations"),
         ({"model_ids": ["BOX"], "settings": {"image_size": 100}}, "settings.image_size"),
+        ({"model_ids": ["BOX"], "settings": {"image_size": 224, "backbone": "inception_v3"}}, "settings.image_size"),
         ({"model_ids": ["BOX"], "settings": {"scale_range": [2.0, 1.0]}}, "settings.scale_range"),
         ({"model_ids": ["BOX"], "settings": {"backbone": "hand-made"}}, "settings.backbone"),
         ({"model_ids": ["BOX"], "settings": {"magic": 1}}, "settings.magic"),
