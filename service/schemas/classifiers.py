@@ -17,8 +17,10 @@ class TrainingSettingsIn(InBody):
         default=None, description="Random variations of each class."
     )
     images_per_variation: Annotated[int, Field(ge=1, le=1000)] | None = None
-    image_size: Annotated[int, Field(ge=32, le=1024, multiple_of=32)] | None = Field(
-        default=None, description="Pixels."
+    image_size: Annotated[int, Field(ge=32, le=1024)] | None = Field(
+        default=None,
+        description="Pixels a side; left out, what the backbone was trained for. EfficientNet takes multiples of 32, "
+        "Inception 11 more than a multiple of 32 (75, 107, … 299, …).",
     )
     scale_range: tuple[PositiveFloat, PositiveFloat] | None = Field(
         default=None, description="Random scales of the object in its pictures: smallest and largest."

@@ -1,15 +1,16 @@
-"""EfficientNet-Lite0 as a list of convolutions: the one description that ONNX and torch both follow.
+"""EfficientNet-Lite0 as a chain of convolutions: the one description that ONNX and torch both follow.
 
 Architecture after Tan and Le 2019 and the Lite variants of the TensorFlow model garden: no squeeze and
 excitation, ReLU6, stem and last convolution of fixed width. Batch normalisation is folded into the weights.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
+from shapewright.classification.network import PICTURES, Add, Convolve, Rectify, Step
 from shapewright.errors import ClassifierError
 
 IMAGE_SIZE = 224
@@ -114,6 +115,24 @@ def layers_from_state(state: Mapping[str, np.ndarray]) -> tuple[Convolution, ...
         factor = gain / np.sqrt(variance + BATCH_NORM_EPSILON)
         layers.append(_layer(step, weight * factor[:, None, None, None], shift - mean * factor))
     return tuple(layers)
+
+
+def network_steps(layers: Sequence[Convolution]) -> tuple[Step, ...]:
+    """The chain as steps: ``conv<number>``, then ``relu<number>`` or ``sum<number>`` where there is one."""
+    steps: list[Step] = []
+    current = remembered = PICTURES
+    for number, layer in enumerate(layers):
+        if layer.opens_block:
+            remembered = current
+        before, after = layer.padding
+        padding = (before, before, after, after)
+        steps.append(Convolve(f"conv{number}", current, layer.weight, layer.bias, layer.stride, layer.groups, padding))
+        if layer.relu6:
+            steps.append(Rectify(f"relu{number}", steps[-1].name, highest=6.0))
+        if layer.adds_input:
+            steps.append(Add(f"sum{number}", (steps[-1].name, remembered)))
+        current = steps[-1].name
+    return tuple(steps)
 
 
 def random_layers(rng: np.random.Generator) -> tuple[Convolution, ...]:

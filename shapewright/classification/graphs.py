@@ -8,16 +8,25 @@ import onnx
 from jaxtyping import Float
 from onnx import TensorProto, helper, numpy_helper
 
-from shapewright.classification.efficientnet_lite import Convolution
 from shapewright.classification.file_format import FEATURES, IMAGES, OPEN_PROBABILITIES, PROBABILITIES
+from shapewright.classification.network import (
+    PICTURES,
+    Add,
+    Concatenate,
+    Convolve,
+    Pool,
+    Rectify,
+    Step,
+    output_channels,
+)
 
 OPSET = 17
 IR_VERSION = 8
 """Old enough for any ONNX Runtime since 1.14."""
 
 
-def features_graph(layers: Sequence[Convolution], *, pixel_mean: float, pixel_scale: float) -> Any:
-    """``images`` (uint8, NHWC) to ``features``: preprocessing, convolutions, mean over the picture.
+def features_graph(steps: Sequence[Step], *, pixel_mean: float, pixel_scale: float) -> Any:
+    """``images`` (uint8, NHWC) to ``features``: preprocessing, the network, mean over the picture.
 
     Returns:
         An ``onnx.ModelProto``.
@@ -25,45 +34,22 @@ def features_graph(layers: Sequence[Convolution], *, pixel_mean: float, pixel_sc
     constants = [
         constant(np.float32(pixel_mean), "pixel_mean"),
         constant(np.float32(1.0 / pixel_scale), "pixel_factor"),
-        constant(np.float32(0.0), "zero"),
-        constant(np.float32(6.0), "six"),
     ]
     nodes = [
         helper.make_node("Cast", [IMAGES], ["pixels"], to=TensorProto.FLOAT),
         helper.make_node("Sub", ["pixels", "pixel_mean"], ["centred"]),
         helper.make_node("Mul", ["centred", "pixel_factor"], ["scaled"]),
-        helper.make_node("Transpose", ["scaled"], ["input"], perm=[0, 3, 1, 2]),
+        helper.make_node("Transpose", ["scaled"], [PICTURES], perm=[0, 3, 1, 2]),
     ]
-    current, remembered = "input", "input"
-    for number, layer in enumerate(layers):
-        if layer.opens_block:
-            remembered = current
-        weight, bias, result = f"w{number}", f"b{number}", f"conv{number}"
-        constants += [constant(layer.weight, weight), constant(layer.bias, bias)]
-        before, after = layer.padding
-        nodes.append(
-            helper.make_node(
-                "Conv",
-                [current, weight, bias],
-                [result],
-                kernel_shape=list(layer.weight.shape[2:]),
-                strides=[layer.stride] * 2,
-                group=layer.groups,
-                pads=[before, before, after, after],
-            )
-        )
-        current = result
-        if layer.relu6:
-            nodes.append(helper.make_node("Clip", [current, "zero", "six"], [f"relu{number}"]))
-            current = f"relu{number}"
-        if layer.adds_input:
-            nodes.append(helper.make_node("Add", [current, remembered], [f"sum{number}"]))
-            current = f"sum{number}"
+    for step in steps:
+        node, own = _node(step)
+        nodes.append(node)
+        constants += own
     nodes += [
-        helper.make_node("GlobalAveragePool", [current], ["pooled"]),
+        helper.make_node("GlobalAveragePool", [steps[-1].name], ["pooled"]),
         helper.make_node("Flatten", ["pooled"], [FEATURES], axis=1),
     ]
-    return features_model(nodes, constants, len(layers[-1].bias))
+    return features_model(nodes, constants, output_channels(steps))
 
 
 def features_model(nodes: Sequence[Any], constants: Sequence[Any], feature_count: int) -> Any:
@@ -76,6 +62,36 @@ def features_model(nodes: Sequence[Any], constants: Sequence[Any], feature_count
         initializer=constants,
     )
     return _model(graph)
+
+
+def _node(step: Step) -> tuple[Any, list[Any]]:
+    """The node of one step and the constants that only it reads."""
+    own: dict[str, np.ndarray | np.float32] = {}
+    attributes: dict[str, Any] = {}
+    match step:
+        case Convolve():
+            kind, reads = "Conv", [step.reads]
+            own = {f"{step.name}_weight": step.weight, f"{step.name}_bias": step.bias}
+            attributes = {
+                "kernel_shape": list(step.weight.shape[2:]),
+                "strides": [step.stride] * 2,
+                "group": step.groups,
+                "pads": list(step.padding),
+            }
+        case Rectify(highest=None):
+            kind, reads = "Relu", [step.reads]
+        case Rectify(highest=highest):
+            kind, reads = "Clip", [step.reads]
+            own = {f"{step.name}_lowest": np.float32(0.0), f"{step.name}_highest": np.float32(highest)}
+        case Pool():
+            kind, reads = {"max": "MaxPool", "mean": "AveragePool"}[step.kind], [step.reads]
+            attributes = {"kernel_shape": [step.side] * 2, "strides": [step.stride] * 2, "pads": list(step.padding)}
+        case Add():
+            kind, reads = "Add", list(step.reads)
+        case Concatenate():
+            kind, reads, attributes = "Concat", list(step.reads), {"axis": 1}
+    node = helper.make_node(kind, [*reads, *own], [step.name], **attributes)
+    return node, [constant(array, name) for name, array in own.items()]
 
 
 def classifier_graph(

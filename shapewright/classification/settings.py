@@ -8,9 +8,6 @@ from shapewright.classification.backbone import BACKBONES, DEFAULT_BACKBONE
 from shapewright.errors import ClassifierError
 from shapewright.rendering.styles import FRAMINGS, SCALE_RANGE, STYLES, WINDOW, Framing, ImageStyle
 
-SIZE_STEP = 32
-"""A backbone halves its picture five times; other sizes would shift its pixels."""
-
 
 @dataclass(frozen=True)
 class TrainingSettings:
@@ -22,7 +19,7 @@ class TrainingSettings:
     Args:
         variations: random variations of each class.
         images_per_variation: pictures of each variation, each with its own rotation and scale.
-        image_size: pixels a side; a multiple of 32.
+        image_size: pixels a side; 0 takes the size that the backbone was trained for.
         scale_range: scales are drawn uniformly from it.
         negatives: objects that are of no class, of each kind: variations of other models together, and random
             assemblies. 0 learns to tell classes apart, but not what is ``unknown``.
@@ -47,7 +44,7 @@ class TrainingSettings:
 
     variations: int = 1000
     images_per_variation: int = 10
-    image_size: int = 224
+    image_size: int = 0
     scale_range: tuple[float, float] = (0.7, 1.0)
     negatives: int = 500
     exemplars: bool = True
@@ -66,13 +63,15 @@ class TrainingSettings:
     subdivision_steps: int = 2
 
     def __post_init__(self) -> None:
+        if self.backbone not in BACKBONES:
+            raise ClassifierError(f"is {self.backbone!r}, must be one of {sorted(BACKBONES)}", where="backbone")
+        sizes = BACKBONES[self.backbone].sizes
+        if self.image_size == 0:
+            object.__setattr__(self, "image_size", sizes.usual)
         checks = {
             "variations": (self.variations >= 2, "at least 2: one to learn from, one held out"),
             "images_per_variation": (self.images_per_variation >= 1, "at least 1"),
-            "image_size": (
-                self.image_size >= SIZE_STEP and self.image_size % SIZE_STEP == 0,
-                f"a multiple of {SIZE_STEP}",
-            ),
+            "image_size": (sizes.fit(self.image_size), f"{sizes} for {self.backbone}"),
             "scale_range": (
                 len(self.scale_range) == 2 and 0 < self.scale_range[0] <= self.scale_range[1],
                 "two positive numbers in order",
@@ -85,7 +84,6 @@ class TrainingSettings:
             "weight_decay": (self.weight_decay >= 0, "not negative"),
             "batch_size": (self.batch_size >= 1, "at least 1"),
             "seed": (self.seed >= 0, "not negative"),
-            "backbone": (self.backbone in BACKBONES, f"one of {sorted(BACKBONES)}"),
             "style": (self.style in STYLES, f"one of {sorted(STYLES)}"),
             "framing": (self.framing in FRAMINGS, f"one of {list(FRAMINGS)}"),
             "window": (self.window > 0, "positive"),

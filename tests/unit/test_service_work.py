@@ -105,6 +105,7 @@ def test_what_is_of_no_class_is_learned_from_models_of_other_things(service: Liv
         ({"model_ids": []}, "model_ids"),
         ({"model_ids": ["BOX"], "settings": {"variations": 0}}, "settings.variations"),
         ({"model_ids": ["BOX"], "settings": {"image_size": 100}}, "settings.image_size"),
+        ({"model_ids": ["BOX"], "settings": {"image_size": 224, "backbone": "inception_v3"}}, "settings.image_size"),
         ({"model_ids": ["BOX"], "settings": {"scale_range": [2.0, 1.0]}}, "settings.scale_range"),
         ({"model_ids": ["BOX"], "settings": {"backbone": "hand-made"}}, "settings.backbone"),
         ({"model_ids": ["BOX"], "settings": {"magic": 1}}, "settings.magic"),

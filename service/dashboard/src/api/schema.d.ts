@@ -1989,7 +1989,7 @@ export interface components {
             images_per_variation?: number | null;
             /**
              * Image Size
-             * @description Pixels.
+             * @description Pixels a side; left out, what the backbone was trained for. EfficientNet takes multiples of 32, Inception 11 more than a multiple of 32 (75, 107, … 299, …).
              */
             image_size?: number | null;
             /**
