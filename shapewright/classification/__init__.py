@@ -7,10 +7,17 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from shapewright.classification.backbone import BACKBONES, Backbone, load_backbone
     from shapewright.classification.array_store import ArrayStore, FolderStore, MemoryStore
+    from shapewright.classification.backbone import BACKBONES, Backbone, load_backbone
     from shapewright.classification.class_instances import gather_instances
-    from shapewright.classification.classifier import UNKNOWN, Classification, Classifier, exemplars_file, files_digest, load_classifier
+    from shapewright.classification.classifier import (
+        UNKNOWN,
+        Classification,
+        Classifier,
+        exemplars_file,
+        files_digest,
+        load_classifier,
+    )
     from shapewright.classification.collection_index import CollectionIndex
     from shapewright.classification.exemplars import Exemplars
     from shapewright.classification.features import FeatureExtractor
@@ -52,8 +59,9 @@ _HOMES = {
 }
 
 __all__ = [
-    "ArrayStore",
     "BACKBONES",
+    "UNKNOWN",
+    "ArrayStore",
     "Backbone",
     "ClassQuery",
     "Classification",
@@ -70,7 +78,6 @@ __all__ = [
     "SkippedMesh",
     "TrainedClassifier",
     "TrainingSettings",
-    "UNKNOWN",
     "exemplars_file",
     "files_digest",
     "gather_instances",

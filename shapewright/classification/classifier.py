@@ -182,9 +182,7 @@ class Classifier:
             images=images,
         )
 
-    def _run(
-        self, images: UInt8[np.ndarray, "N H W 3"]
-    ) -> tuple[Float[np.ndarray, "N C"], Float[np.ndarray, "N C"]]:
+    def _run(self, images: UInt8[np.ndarray, "N H W 3"]) -> tuple[Float[np.ndarray, "N C"], Float[np.ndarray, "N C"]]:
         """Probabilities of pictures, without and with a share for ``none``."""
         if images.shape[1:3] != (self.image_size, self.image_size):
             raise ClassifierError(f"pictures of {images.shape[1:3]} pixels, expected {self.image_size}", where="images")

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import get_args
 
 import numpy as np
-from jaxtyping import Float, Int, UInt8
+from jaxtyping import Float, Float32, Int, UInt8
 
 from shapewright.errors import RenderingError
 from shapewright.mesh import TriangleMesh
@@ -30,11 +30,11 @@ def render_images(
 ) -> UInt8[np.ndarray, "N H W 3"]:
     """Draw N pictures of M objects, each turned and scaled.
 
-    Every object is normalised first (vertex mean to the origin, coordinates within ±1; paper section 3.2),
-    then rotated, scaled and projected orthographically onto the square [-window, window]. With the default
-    window of 2, the one of the paper's depth images, the largest learning scale 2 lets an object whose far end
-    is 1 away from its centre reach the rim exactly; only the ends of a box-like object's diagonals (up to 1.7)
-    are cut off, and scale 0.8 still fills 40 % of the width.
+    Every object is normalised first, then rotated, scaled and projected orthographically onto the square
+    [-window, window]. The framing ``sphere`` with window 1 shows every object whole at scales up to 1, and no
+    smaller than it must be. The paper's framing (section 3.2) goes with window 2, the one of its depth images: the
+    largest learning scale 2 lets an object whose far end is 1 away from its centre reach the rim exactly; only the
+    ends of a box-like object's diagonals (up to 1.7) are cut off, and scale 0.8 still fills 40 % of the width.
 
     Both sides of a face look the same, so winding does not matter.
 
@@ -85,8 +85,7 @@ def build_scene(
     if isinstance(vertices, np.ndarray):
         assert triangles is not None
         chosen = vertices[used[0] : used[-1] + 1] if used[-1] - used[0] + 1 == len(used) else vertices[used]
-        normalized = normalized_positions(chosen, framing)
-        low, high = normalized.min(axis=1), normalized.max(axis=1)
+        normalized, low, high = normalized_positions(chosen, triangles, framing)
         positions = normalized.reshape(-1, 3)
         corners = triangles
         first_vertex = np.arange(len(used)) * chosen.shape[1]
@@ -94,9 +93,11 @@ def build_scene(
         corner_count = np.full(len(used), triangles.size)
     else:
         meshes = [vertices[i] for i in used]
-        parts = [normalized_positions(mesh.vertices[None], framing)[0] for mesh in meshes]
-        low, high = (np.stack([end(part, axis=0) for part in parts]) for end in (np.min, np.max))
-        positions = np.concatenate(parts)
+        parts, lows, highs = zip(
+            *(normalized_positions(mesh.vertices[None], mesh.faces, framing) for mesh in meshes), strict=True
+        )
+        low, high = np.concatenate(lows), np.concatenate(highs)
+        positions = np.concatenate([part[0] for part in parts])
         corners = np.concatenate([mesh.faces for mesh in meshes])
         first_vertex = _offsets([len(mesh.vertices) for mesh in meshes])
         corner_count = np.array([mesh.faces.size for mesh in meshes])
@@ -114,16 +115,22 @@ def build_scene(
 
 
 def normalized_positions(
-    vertices: Float[np.ndarray, "M V 3"], framing: Framing = "paper"
-) -> Float[np.ndarray, "M V 3"]:
-    """Vertices as float32 with the origin and the size that :data:`Framing` says."""
+    vertices: Float[np.ndarray, "M V 3"], triangles: Int[np.ndarray, "F 3"], framing: Framing = "paper"
+) -> tuple[Float32[np.ndarray, "M V 3"], Float32[np.ndarray, "M 3"], Float32[np.ndarray, "M 3"]]:
+    """Vertices with the origin and the size that :data:`Framing` says; ends of the boxes around what faces use."""
+    used = np.zeros(vertices.shape[1], dtype=bool)
+    used[triangles] = True
+    seen = vertices if used.all() or not used.any() else vertices[:, used]
+    low, high = seen.min(axis=1), seen.max(axis=1)
     if framing == "paper":
-        centred = vertices - vertices.mean(axis=1, keepdims=True)
-        reach = np.abs(centred).max(axis=(1, 2), keepdims=True)
+        middle = vertices.mean(axis=1)
+        reach = np.maximum(vertices.max(axis=1) - middle, middle - vertices.min(axis=1)).max(axis=1)
     else:
-        centred = vertices - (vertices.min(axis=1, keepdims=True) + vertices.max(axis=1, keepdims=True)) / 2
-        reach = np.sqrt((centred * centred).sum(axis=2)).max(axis=1)[:, None, None]
-    return np.asarray(centred / np.where(reach > 0, reach, 1.0), dtype=np.float32)
+        middle = (low + high) / 2
+        reach = np.sqrt(((seen - middle[:, None]) ** 2).sum(axis=2).max(axis=1))
+    reach = np.where(reach > 0, reach, 1.0)[:, None]
+    placed = ((vertices - middle[:, None]) / reach[:, None]).astype(np.float32)
+    return placed, ((low - middle) / reach).astype(np.float32), ((high - middle) / reach).astype(np.float32)
 
 
 def covered_rectangles(

@@ -10,7 +10,8 @@ WINDOW = 2.0
 
 Framing = Literal["paper", "sphere"]
 """``paper``: vertex mean at the origin, coordinates within ±1 (section 3.2).
-``sphere``: middle of the bounding box at the origin, the farthest point at distance 1."""
+``sphere``: middle of the bounding box at the origin, the farthest point at distance 1;
+vertices that no face uses do not count."""
 
 FRAMINGS: Final[tuple[Framing, ...]] = get_args(Framing)
 

@@ -162,7 +162,7 @@ SPHERE = {"framing": "sphere", "window": 1.0}
 def test_in_the_sphere_the_farthest_point_is_at_distance_1(seed, count):
     rng = np.random.default_rng(seed)
     points = rng.normal(size=(3, count, 3)) * rng.uniform(0.01, 100.0, (3, 1, 1)) + rng.uniform(-100.0, 100.0, 3)
-    framed = normalized_positions(points, "sphere")
+    framed, _, _ = normalized_positions(points, np.repeat(np.arange(count), 3).reshape(-1, 3), "sphere")
     assert np.allclose(np.linalg.norm(framed, axis=2).max(axis=1), 1.0, atol=1e-5)
     assert np.allclose(framed.min(axis=1) + framed.max(axis=1), 0.0, atol=1e-5)
 
@@ -204,6 +204,38 @@ def test_in_the_sphere_the_density_of_vertices_does_not_matter():
         assert_alike(one, other)
     by_mean = [draw(mesh, rotations[:1], style="lambert", framing="paper", window=2.0) for mesh in (plain, dense)]
     assert np.abs(by_mean[0].astype(np.int16) - by_mean[1]).mean() > 2, "the vertex mean moves with it"
+
+
+@given(seed=st.integers(0, 1000))
+@settings(max_examples=15, deadline=None)
+def test_the_sphere_shows_every_object_whole_however_its_vertices_are_spread(seed):
+    rng = np.random.default_rng(seed)
+    size, place = rng.uniform(0.2, 1.0, 3), rng.uniform(-5, 5, 3)
+    dense = simple_shapes.lathe([(0.1, -0.1), (0.1, 0.0), (0.1, 0.1)])
+    mesh = simple_shapes.joined(
+        [simple_shapes.box(size, place), TriangleMesh(dense.vertices * size + place, dense.faces)]
+    )
+    to_the_right, _ = Rotation.align_vectors([[1.0, 0.0, 0.0]], [size])
+    turned = Rotation.from_euler("x", rng.uniform(0, 360), degrees=True) * to_the_right
+    # Scale 0.9, as a line at the very rim of a picture could not be told from one that is cut off.
+    picture = draw(mesh, turned.as_matrix()[None], 0.9 * ONE, size=200, window=1.0, framing="sphere")
+    rows, columns = np.nonzero(foreground(picture))
+    assert abs(columns.max() - 189) <= 3, "a corner of the box is the farthest point"
+    assert abs(columns.min() - 10) <= 3
+    assert min(rows.min(), 199 - rows.max()) >= 9
+
+
+def test_vertices_without_a_face_do_not_matter_to_the_sphere():
+    rotation, scale = random_views(np.random.default_rng(9), 1, scale_range=(0.7, 1.0))
+    mesh = simple_shapes.stool()
+    strays = np.array([[50.0, 0.0, 3.0], [-2.0, 70.0, 0.0]])
+    littered = TriangleMesh(np.concatenate([strays, mesh.vertices]), mesh.faces + len(strays))
+    options = {"window": 1.0, "framing": "sphere"}
+    clean = draw(mesh, rotation, scale, **options)
+    assert foreground(clean).mean() > 0.1
+    assert np.array_equal(clean, draw(littered, rotation, scale, **options))
+    instances = render_images(littered.vertices[None], littered.faces, rotation, scale, size=96, **options)
+    assert np.array_equal(clean, instances[0])
 
 
 def test_drawing_again_gives_the_same_bytes():
