@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cli.console import AsJson, flowing, print_json, shown_progress, stdout
+from cli.evaluate_classifier import classification, retrieval
 from cli.evaluation_options import (
     CacheFolder,
     Classes,
@@ -41,7 +42,8 @@ app = typer.Typer(rich_markup_mode="rich", no_args_is_help=True)
 
         Examples:
 
-          [bold]shapewright evaluate coverage --dataset DIR[/]                      all classes
+          [bold]shapewright evaluate classification --dataset DIR[/]                trains, if need be
+          [bold]shapewright evaluate retrieval --dataset DIR -c mine.onnx[/]        a classifier of yours
           [bold]shapewright evaluate coverage --dataset DIR --report cover.html[/]  with pictures
         """
     )
@@ -130,7 +132,8 @@ def coverage(
         typer.echo(str(report))
 
 
-app.command("coverage", help=flowing(coverage.__doc__))(coverage)
+for verb in (classification, retrieval, coverage):
+    app.command(verb.__name__, help=flowing(verb.__doc__))(verb)
 
 
 def _chosen_classes(

@@ -7,9 +7,10 @@ from typing import Annotated
 import typer
 
 from cli.console import AsJson, print_json, shown_progress
-from cli.sources import load_classes, read_object
+from cli.evaluation_options import CacheFolder
+from cli.learning import learn, save_classifier
+from cli.sources import load_classes, load_negatives, read_object
 from shapewright.errors import ClassifierError
-from shapewright.whole_file import write_whole
 
 
 def train(
@@ -17,7 +18,8 @@ def train(
     models: Annotated[
         list[str] | None,
         typer.Argument(
-            help="Classes, shipped models or JSON files; default: every shipped class with all of its models.",
+            help="Classes, shipped models or JSON files; default: all models of every class that ships, without the "
+            "further objects.",
             show_default=False,
         ),
     ] = None,
@@ -35,9 +37,13 @@ def train(
     settings_file: Annotated[
         Path | None, typer.Option("--settings", help='JSON file with any of the settings, e.g. {"image_size": 160}.')
     ] = None,
+    cache: CacheFolder = None,
     as_json: AsJson = False,
 ) -> None:
     """Train a classifier with pictures of random variations; the models of a class share its variations evenly.
+
+    Shipped objects that are of none of the classes, and random assemblies, teach what is unknown. What was drawn is
+    kept: the next training draws only what is new. Beside the .onnx file lies one with the geometry of the variations.
 
     Examples:
 
@@ -46,7 +52,7 @@ def train(
     """
     if output.suffix.lower() != ".onnx":
         raise ClassifierError("classifiers are written as .onnx", where=str(output))
-    from shapewright.classification import TrainingSettings, train_classifier
+    from shapewright.classification import TrainingSettings, exemplars_file
 
     by_class = load_classes(models)
     options = {"variations": variations, "images_per_variation": images, "epochs": epochs, "seed": seed}
@@ -59,14 +65,15 @@ def train(
     started_s = time.monotonic()
     names = {name: [compiled.model.name for compiled in members] for name, members in by_class.items()}
     with shown_progress("training") as progress:
-        trained = train_classifier(by_class, settings, progress=progress)
+        trained = learn(by_class, load_negatives(by_class), settings, progress, cache)
     seconds = time.monotonic() - started_s
-    output.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(output, trained.onnx)
+    save_classifier(trained, output)
+    beside = None if trained.exemplars is None else exemplars_file(output)
     if as_json:
         print_json(
             {
                 "file": str(output),
+                "exemplars_file": None if beside is None else str(beside),
                 "class_names": list(trained.class_names),
                 "models": names,
                 "metrics": trained.metrics,
@@ -75,6 +82,8 @@ def train(
         )
         return
     typer.echo(f"{output}: {', '.join(trained.class_names)} ({seconds:.0f} s)")
+    if beside is not None:
+        typer.echo(f"{beside}: the geometry of the variations, for `classify` and `retrieve`")
     for name, value in trained.metrics.items():
         if isinstance(value, float):
             typer.echo(f"  {name}: {value:.4g}")

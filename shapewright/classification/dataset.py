@@ -103,7 +103,8 @@ def plan_learning(
             for generator, count in zip(others, evenly(amount, len(others)), strict=True)
         ]
         shares.append(Share(AssemblySource(), none, amount, described))
-        known = tuple(generator for generators in classes.values() for generator in generators)
+        every = [generator for generators in classes.values() for generator in generators]
+        known = tuple(sorted(every, key=lambda generator: generator.model.digest))  # in whatever order they came
         trials = max(1, round(amount * TRIALS_SHARE))
         shares += [
             Share(source, none, trials, described, learned=False)

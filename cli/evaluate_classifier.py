@@ -1,0 +1,326 @@
+"""`shapewright evaluate classification` and `evaluate retrieval`: a classifier on labelled meshes."""
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from cli.console import AsJson, print_json, shown_progress, stdout
+from cli.evaluation_options import (
+    CacheFolder,
+    Classes,
+    DatasetFolder,
+    Jobs,
+    Limit,
+    ReportFile,
+    Seed,
+    names_in,
+    threads,
+)
+from cli.learning import kept_classifier
+from cli.sources import load_class, load_classes, load_negatives, read_object
+from shapewright.errors import EvaluationError
+from shapewright.progress import PartialProgress, Progress
+from shapewright.whole_file import write_whole
+
+if TYPE_CHECKING:
+    from shapewright.classification import Classifier, TrainingSettings
+    from shapewright.evaluation.classified import JudgedDataset
+    from shapewright.modeling import CompiledModel
+
+ClassifierFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--classifier",
+        "-c",
+        help="The .onnx file of `shapewright train` (default: one is trained on the shipped classes of the dataset, "
+        "and kept in the cache).",
+        show_default=False,
+    ),
+]
+SettingsFile = Annotated[
+    Path | None, typer.Option("--settings", help="JSON file with settings of the trainings.", show_default=False)
+]
+Views = Annotated[int, typer.Option(min=1, max=1000, help="Pictures taken of each mesh.")]
+Baselines = Annotated[
+    bool,
+    typer.Option(
+        help="Train the baselines, too: without variations (the paper's), and on random weights of the network."
+    ),
+]
+
+NO_VARIATION, RANDOM_WEIGHTS = "no_variation", "random_weights"
+_TRAINING_SHARE = 0.6
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """A dataset that was judged, and what it took."""
+
+    dataset: "JudgedDataset"
+    classifier: "Classifier"
+    training_s: float
+    started_s: float
+
+
+def classification(
+    dataset: DatasetFolder,
+    classifier: ClassifierFile = None,
+    report: ReportFile = None,
+    limit: Limit = None,
+    classes: Classes = None,
+    views: Views = 10,
+    baselines: Baselines = False,
+    settings_file: SettingsFile = None,
+    seed: Seed = 0,
+    jobs: Jobs = None,
+    cache: CacheFolder = None,
+    as_json: AsJson = False,
+) -> None:
+    """Tell how many meshes of a dataset get their class, and how well others are told from them.
+
+    Meshes of classes that the classifier does not know count as `other`. The figures are given for all evidence and
+    for the pictures alone. Without --classifier one is trained, with --seed, on the shipped models of the dataset's
+    classes.
+
+    Examples:
+
+      [bold]shapewright evaluate classification --dataset DIR --report classified.html[/]
+      [bold]shapewright evaluate classification --dataset DIR -c classifier.onnx --json[/]
+      [bold]shapewright evaluate classification --dataset DIR --baselines --seed 1[/]
+    """
+    from shapewright.evaluation.classification_figures import evidence_scores, figures_by, unknown_figures
+
+    options = Options(dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache)
+    with _evaluated(options, report, [NO_VARIATION, RANDOM_WEIGHTS] if baselines else []) as (done, progress):
+        tables = evidence_scores(done.dataset)
+        figures = {name: figures_by(done.dataset, scores) for name, scores in tables.items()}
+        unknown = unknown_figures(done.dataset)
+        _write_report(report, done, figures={name: one.to_dict() for name, one in figures.items()}, progress=progress)
+    judged = done.dataset.judged
+    document = {
+        **_common(options, done, report),
+        **figures["all"].to_dict(),
+        "n_other": sum(one.label == "other" for one in judged),
+        "unknown": unknown,
+        "evidence": {name: one.to_dict() for name, one in figures.items() if name != "all"},
+        "meshes": [
+            {
+                "file": one.item.file,
+                "class": one.item.class_name,
+                "class_name": one.found.class_name,
+                "answer": one.found.answer,
+                "known": one.found.known,
+                "probability": one.found.probability,
+                "seconds": round(one.seconds, 4),
+            }
+            for one in judged
+        ],
+    }
+    if as_json:
+        print_json(document)
+        return
+    from rich.table import Table
+
+    table = Table("class", "n", "right", "by pictures", box=None, pad_edge=False)
+    for name, row in figures["all"].per_class.items():
+        by_pictures = figures["pictures"].per_class[name]["accuracy"]
+        table.add_row(name, f"{row['n']:.0f}", f"{row['accuracy']:.1%}", f"{by_pictures:.1%}")
+    stdout().print(table)
+    for name, one in figures.items():
+        known = "" if one.auroc_known is None else f", known against other {one.auroc_known:.3f} (AUROC)"
+        typer.echo(f"{_TITLES.get(name, name)}: {one.accuracy:.1%} of {one.n} right{known}")
+    typer.echo(f"a mesh takes {document['seconds_per_mesh_median'] * 1e3:.0f} ms (median)")
+    _say_skipped(done, report)
+
+
+def retrieval(
+    dataset: DatasetFolder,
+    classifier: ClassifierFile = None,
+    report: ReportFile = None,
+    limit: Limit = None,
+    classes: Classes = None,
+    views: Views = 10,
+    settings_file: SettingsFile = None,
+    seed: Seed = 0,
+    jobs: Jobs = None,
+    cache: CacheFolder = None,
+    as_json: AsJson = False,
+) -> None:
+    """Tell how high the meshes of each class stand when all meshes of a dataset are ranked for it (paper section 4.2).
+
+    Average precision is compared with the paper's two baselines: the panorama distance to the default instance, and a
+    classifier that learned without variations.
+
+    Examples:
+
+      [bold]shapewright evaluate retrieval --dataset DIR --report retrieved.html[/]
+      [bold]shapewright evaluate retrieval --dataset DIR -c classifier.onnx --json[/]
+    """
+    from shapewright.evaluation.classification_figures import evidence_scores, retrieval_figures
+
+    options = Options(dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache)
+    with _evaluated(options, report, [NO_VARIATION]) as (done, progress):
+        measured = {
+            name: retrieval_figures(done.dataset, scores) for name, scores in evidence_scores(done.dataset).items()
+        }
+        curves = {name: mean.to_dict() for name, (mean, _) in measured.items()}
+        _write_report(report, done, curves=curves, progress=progress)
+    mean, per_class = measured["all"]
+    document = {
+        **_common(options, done, report),
+        "n": len(done.dataset.judged),
+        "mean_average_precision": mean.average_precision,
+        "mean_average_precision_pictures": measured["pictures"][0].average_precision,
+        "mean_average_precision_panorama": measured["panorama_to_default"][0].average_precision,
+        "mean_average_precision_no_variation": measured[NO_VARIATION][0].average_precision,
+        "per_class": {name: one.to_dict() for name, one in per_class.items()},
+        "evidence": curves,
+    }
+    if as_json:
+        print_json(document)
+        return
+    from rich.table import Table
+
+    table = Table("class", "n", "average precision", "first tier", box=None, pad_edge=False)
+    for name, one in per_class.items():
+        table.add_row(name, str(one.n), f"{one.average_precision:.3f}", f"{one.first_tier:.3f}")
+    stdout().print(table)
+    for name, (found, _) in measured.items():
+        typer.echo(f"{_TITLES.get(name, name)}: mean average precision {found.average_precision:.3f}")
+    _say_skipped(done, report)
+
+
+_TITLES = {
+    "all": "all evidence",
+    "pictures": "pictures alone",
+    "panorama_to_default": "panorama distance to the default instance",
+    NO_VARIATION: "learned without variations",
+    RANDOM_WEIGHTS: "learned on random weights of the network",
+}
+
+
+@dataclass(frozen=True)
+class Options:
+    """What both verbs are told."""
+
+    dataset: Path
+    classifier: Path | None
+    limit: int | None
+    classes: str | None
+    views: int
+    settings_file: Path | None
+    seed: int
+    jobs: int | None
+    cache: Path | None
+
+
+@contextmanager
+def _evaluated(options: Options, report: Path | None, baselines: Sequence[str]) -> Iterator[tuple[Evaluated, Progress]]:
+    """Judge the dataset with the classifier and the baselines; the progress is what is left for a report."""
+    from shapewright.classification import load_classifier
+    from shapewright.evaluation.classified import judge_dataset
+    from shapewright.evaluation.datasets import of_classes, read_dataset, spread
+
+    started_s = time.monotonic()
+    if report is not None and report.is_dir():
+        raise EvaluationError("a file is needed, this is a folder", where=f"--report {report}")
+    items = read_dataset(options.dataset)
+    wanted = names_in(options.classes)
+    chosen = spread(items if wanted is None else of_classes(items, wanted), options.limit)
+    if not chosen:
+        raise EvaluationError("no mesh of the dataset has one of these classes", where="--classes")
+    settings = _settings(options)
+    with threads(options.jobs) as used, shown_progress("evaluating") as progress:
+        training = PartialProgress(progress, 0.0, _TRAINING_SHARE)
+        learned: Mapping[str, Sequence[CompiledModel]]
+        if options.classifier is not None:
+            network = load_classifier(options.classifier)
+            learned = {name: load_class(name) for name in network.class_names}
+        else:
+            learned = _classes_of({item.class_name for item in items})
+            network = kept_classifier(learned, load_negatives(learned), settings, training, options.cache)
+        others = {
+            name: kept_classifier(learned, [], _baseline(name, settings), training, options.cache) for name in baselines
+        }
+        training_s = time.monotonic() - started_s
+        dataset = judge_dataset(
+            chosen,
+            network,
+            {name: models[:1] for name, models in learned.items()},
+            baselines=others,
+            views=options.views,
+            seed=options.seed,
+            jobs=used,
+            progress=PartialProgress(progress, _TRAINING_SHARE, 0.95),
+        )
+        yield Evaluated(dataset, network, training_s, started_s), PartialProgress(progress, 0.95, 1.0)
+
+
+def _settings(options: Options) -> "TrainingSettings":
+    from shapewright.classification import TrainingSettings
+
+    given = {} if options.settings_file is None else read_object(options.settings_file)
+    return TrainingSettings.from_dict({"seed": options.seed} | given)
+
+
+def _baseline(name: str, settings: "TrainingSettings") -> "TrainingSettings":
+    plain = replace(settings, negatives=0, exemplars=False)
+    if name == NO_VARIATION:
+        return replace(plain, vary=False)
+    return replace(plain, backbone="efficientnet_lite0_random")
+
+
+def _classes_of(labels: set[str]) -> "Mapping[str, Sequence[CompiledModel]]":
+    """Load the shipped classes that the dataset has."""
+    every = load_classes(None)
+    learned = {name: models for name, models in every.items() if name in labels}
+    if len(learned) < 2:
+        raise EvaluationError("fewer than two classes of the dataset ship; name a classifier", where="--dataset")
+    return learned
+
+
+def _common(options: Options, done: Evaluated, report: Path | None) -> dict[str, Any]:
+    import statistics
+
+    return {
+        "dataset": str(options.dataset),
+        "class_names": list(done.dataset.class_names),
+        "views": options.views,
+        "seed": options.seed,
+        "seconds_per_mesh_median": statistics.median(one.seconds for one in done.dataset.judged),
+        "seconds_training": round(done.training_s, 3),
+        "seconds": round(time.monotonic() - done.started_s, 3),
+        "skipped_count": len(done.dataset.skipped),
+        "skipped": [asdict(skipped) for skipped in done.dataset.skipped],
+        "report": None if report is None else str(report),
+    }
+
+
+def _write_report(
+    report: Path | None,
+    done: Evaluated,
+    *,
+    figures: Mapping[str, Mapping[str, Any]] | None = None,
+    curves: Mapping[str, Mapping[str, Any]] | None = None,
+    progress: Progress,
+) -> None:
+    if report is None:
+        return
+    from shapewright.evaluation.classifier_report import classifier_report
+
+    titles = {name: _TITLES.get(name, name) for name in figures or curves or {}}
+    page = classifier_report(done.dataset, titles, figures=figures, curves=curves, progress=progress)
+    report.parent.mkdir(parents=True, exist_ok=True)
+    write_whole(report, page.encode())
+
+
+def _say_skipped(done: Evaluated, report: Path | None) -> None:
+    for skipped in done.dataset.skipped:
+        typer.echo(f"skipped {skipped.file}: {skipped.reason}", err=True)
+    if report is not None:
+        typer.echo(str(report))
