@@ -55,6 +55,8 @@ Baselines = Annotated[
 
 NO_VARIATION, RANDOM_WEIGHTS = "no_variation", "random_weights"
 _TRAINING_SHARE = 0.6
+_BASELINE_SHARE = 10
+"""Baselines learn from a tenth of the pictures: more of the same objects, or of noise, teach nothing more."""
 
 
 @dataclass(frozen=True)
@@ -269,7 +271,8 @@ def _settings(options: Options) -> "TrainingSettings":
 
 
 def _baseline(name: str, settings: "TrainingSettings") -> "TrainingSettings":
-    plain = replace(settings, negatives=0, exemplars=False)
+    fewer = max(settings.variations // _BASELINE_SHARE, 20)
+    plain = replace(settings, variations=fewer, negatives=0, exemplars=False)
     if name == NO_VARIATION:
         return replace(plain, vary=False)
     return replace(plain, backbone="efficientnet_lite0_random")

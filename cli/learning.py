@@ -51,13 +51,13 @@ def kept_classifier(
     cache: Path | None = None,
 ) -> "Classifier":
     """The classifier of these models and settings: of an earlier run, or trained now and kept."""
-    from shapewright import __version__
     from shapewright.classification import load_backbone, load_classifier
+    from shapewright.classification.file_format import FORMAT_VERSION
     from shapewright.errors import ClassifierError
 
     digests = {name: [model.model.digest for model in models] for name, models in classes.items()}
     others = [model.model.digest for model in negatives]
-    what = [__version__, digests, others, settings.to_dict(), load_backbone(settings.backbone).key]
+    what = [FORMAT_VERSION, digests, others, settings.to_dict(), load_backbone(settings.backbone).key]
     name = hashlib.sha256(json.dumps(what).encode()).hexdigest()[:24]
     path = cache_folder(cache, "learning") / "classifiers" / f"{name}.onnx"
     if path.is_file():

@@ -30,6 +30,9 @@ EVIDENCE: Final[tuple[Evidence, ...]] = get_args(Evidence)
 PROBABILITY_FLOOR: Final = 1e-6
 """Below this, probabilities are rounding noise of a softmax and count alike."""
 
+_ALIKE: Final = 1e-9
+"""Distances that differ by no more are the same."""
+
 _STEP: Final = 16
 
 
@@ -113,7 +116,9 @@ def rank(
     """
     if evidence not in EVIDENCE:
         raise ClassifierError(f"{evidence!r} is none of {', '.join(EVIDENCE)}", where="evidence")
-    probabilities = None if evidence == "panorama" else query_probabilities(index, query)
+    # distances to exemplars may have a part in the probabilities: they must not count twice
+    by_class = index.picture_probabilities if evidence == "combined" else index.probabilities
+    probabilities = None if evidence == "panorama" else query_probabilities(index, query, by_class)
     distances = None if evidence == "probabilities" else query_distances(index, query, progress)
     if probabilities is None:
         assert distances is not None
@@ -135,20 +140,27 @@ def rank(
     ]
 
 
-def query_probabilities(index: CollectionIndex, query: ClassQuery | MeshQuery) -> Float[np.ndarray, " N"]:
+def query_probabilities(
+    index: CollectionIndex, query: ClassQuery | MeshQuery, by_class: Float[np.ndarray, "N C"]
+) -> Float[np.ndarray, " N"]:
     """Probability that each mesh is of the wanted class, or of the same class as the wanted mesh.
+
+    Args:
+        index: of the collection.
+        query: what is wanted.
+        by_class: probabilities of the classes for each mesh of the index.
 
     Raises:
         ClassifierError: a class that the index does not know.
     """
     known = index.known.astype(np.float64)
     if isinstance(query, MeshQuery):
-        same = index.probabilities.astype(np.float64) @ np.asarray(query.probabilities, dtype=np.float64)
+        same = by_class.astype(np.float64) @ np.asarray(query.probabilities, dtype=np.float64)
         return np.asarray(query.known * known * same)
     if query.class_name not in index.class_names:
         names = ", ".join(index.class_names)
         raise ClassifierError(f"the classifier does not know {query.class_name!r} (but: {names})", where="class_name")
-    return np.asarray(known * index.probabilities[:, index.class_names.index(query.class_name)])
+    return np.asarray(known * by_class[:, index.class_names.index(query.class_name)])
 
 
 def query_distances(
@@ -195,5 +207,5 @@ def combined_scores(
     if len(distances) == 0:
         return np.empty(0)
     low, high = np.quantile(distances, [0.25, 0.75])
-    spread = high - low if high > low else 1.0
+    spread = high - low if high - low > _ALIKE else 1.0
     return np.asarray(np.log(np.maximum(probabilities, PROBABILITY_FLOOR)) - distances / spread)

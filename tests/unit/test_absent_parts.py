@@ -5,7 +5,8 @@ import pytest
 from chair_model import armchair
 
 from shapewright.classification import TrainingSettings
-from shapewright.classification.dataset import BLOCK, variation_images
+from shapewright.classification.chunks import Chunk, chunk_images, series_generators
+from shapewright.classification.sources import ModelSource
 from shapewright.distances.alignment import Pose, rotations_24
 from shapewright.distances.panorama import panorama_descriptor, panorama_descriptors
 from shapewright.distances.surface import SurfaceDistance, poisson_disk_points
@@ -15,7 +16,6 @@ from shapewright.estimation.comparison import Comparison
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling import CompiledModel
 from shapewright.rendering import render_images
-from shapewright.rendering.views import random_views
 
 
 @pytest.fixture(scope="module")
@@ -36,20 +36,20 @@ def rebuilt_from_scratch(chair: CompiledModel, row: np.ndarray) -> TriangleMesh:
     return TriangleMesh(chair.surface_points(row[None])[0], chair.surface_triangles()).cleaned()
 
 
-def test_pictures_of_a_block_are_those_of_single_instances(chair: CompiledModel) -> None:
-    settings = TrainingSettings(variations=BLOCK, images_per_variation=2, image_size=96)
-    block = variation_images(chair, 0, BLOCK, settings)
-    digest = int.from_bytes(bytes.fromhex(chair.model.digest)[:8], "big")
-    rng = np.random.default_rng([settings.seed, digest, 0])
-    values = chair.random_values(rng, BLOCK)
-    rotations, scales = random_views(rng, 2 * BLOCK, scale_range=settings.scale_range)
+def test_learning_pictures_are_those_of_single_instances(chair: CompiledModel) -> None:
+    count = 16
+    settings = TrainingSettings(images_per_variation=2, image_size=96)
+    source = ModelSource(chair)
+    chunk = Chunk(source, 0, count)
+    values = source.values(series_generators(settings.seed, source.digest, 0)[0], count)
+    rotations, scales = chunk.views(settings)
     assert not chair.parts_present(values).all()
     alone = [chair.instance(row) for row in values]
     pictures = render_images(
-        alone, None, rotations, scales, objects=np.repeat(np.arange(BLOCK), 2), size=96, style=settings.style,
-        window=settings.window,
+        alone, None, rotations.reshape(-1, 3, 3), scales.reshape(-1), objects=np.repeat(np.arange(count), 2), size=96,
+        style=settings.style, window=settings.window, framing=settings.framing,
     )  # fmt: skip
-    np.testing.assert_array_equal(block, pictures)
+    np.testing.assert_array_equal(chunk_images(chunk, settings), pictures)
 
 
 def test_an_instance_is_the_cleaned_batch(chair: CompiledModel, rows: np.ndarray) -> None:

@@ -8,8 +8,8 @@ import pytest
 from command_line import shapewright, write_lamp_model
 from PIL import Image
 
-from cli.sources import load_class, load_classes
-from models_store.library.shipped import list_classes
+from cli.sources import load_class, load_classes, load_negatives
+from models_store.library.shipped import list_classes, list_further_classes
 from shapewright.mesh_file import load_mesh
 from shapewright.modeling import Recorder
 
@@ -100,7 +100,12 @@ def test_of_several_models_the_best_one_is_found(folder: Path, tmp_path: Path) -
 
 def test_a_class_is_all_of_its_models() -> None:
     shipped = list_classes()
-    assert list(load_classes(None)) == list(shipped)
+    assert [*load_classes(None), *list_further_classes()] == sorted(
+        shipped, key=lambda name: (name in list_further_classes(), name)
+    )
+    assert {one.model.class_name for one in load_negatives(["table", "chair"])} == set(list_further_classes()) - {
+        "chair"
+    }
     assert [one.model.name for one in load_class("table")] == shipped["table"]
     both = load_classes(["table", "sword_katana"])
     assert [one.model.name for one in both["table"]] == shipped["table"]
