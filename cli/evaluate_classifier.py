@@ -53,6 +53,8 @@ Baselines = Annotated[
     ),
 ]
 
+Fit = Annotated[bool, typer.Option("--fit", help="Classify with a short fit of the likeliest classes, too.")]
+
 NO_VARIATION, RANDOM_WEIGHTS = "no_variation", "random_weights"
 _TRAINING_SHARE = 0.6
 _BASELINE_SHARE = 10
@@ -77,6 +79,9 @@ def classification(
     classes: Classes = None,
     views: Views = 10,
     baselines: Baselines = False,
+    fit: Annotated[
+        bool, typer.Option("--fit", help="Classify with a short fit of the likeliest classes, too.")
+    ] = False,
     settings_file: SettingsFile = None,
     seed: Seed = 0,
     jobs: Jobs = None,
@@ -97,7 +102,7 @@ def classification(
     """
     from shapewright.evaluation.classification_figures import evidence_scores, figures_by, unknown_figures
 
-    options = Options(dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache)
+    options = Options(dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache, fit)
     with _evaluated(options, report, [NO_VARIATION, RANDOM_WEIGHTS] if baselines else []) as (done, progress):
         tables = evidence_scores(done.dataset)
         figures = {name: figures_by(done.dataset, scores) for name, scores in tables.items()}
@@ -200,6 +205,7 @@ def retrieval(
 _TITLES = {
     "all": "all evidence",
     "pictures": "pictures alone",
+    "fitted": "all evidence, the likeliest classes fitted",
     "panorama_to_default": "panorama distance to the default instance",
     NO_VARIATION: "learned without variations",
     RANDOM_WEIGHTS: "learned on random weights of the network",
@@ -219,6 +225,7 @@ class Options:
     seed: int
     jobs: int | None
     cache: Path | None
+    fit: bool = False
 
 
 @contextmanager
@@ -255,12 +262,17 @@ def _evaluated(options: Options, report: Path | None, baselines: Sequence[str]) 
             network,
             {name: models[:1] for name, models in learned.items()},
             baselines=others,
+            fitted=_by_digest(learned) if options.fit else None,
             views=options.views,
             seed=options.seed,
             jobs=used,
             progress=PartialProgress(progress, _TRAINING_SHARE, 0.95),
         )
         yield Evaluated(dataset, network, training_s, started_s), PartialProgress(progress, 0.95, 1.0)
+
+
+def _by_digest(classes: "Mapping[str, Sequence[CompiledModel]]") -> "dict[str, CompiledModel]":
+    return {compiled.model.digest: compiled for models in classes.values() for compiled in models}
 
 
 def _settings(options: Options) -> "TrainingSettings":
@@ -290,12 +302,14 @@ def _classes_of(labels: set[str]) -> "Mapping[str, Sequence[CompiledModel]]":
 def _common(options: Options, done: Evaluated, report: Path | None) -> dict[str, Any]:
     import statistics
 
+    fitted = [one.fitted_seconds for one in done.dataset.judged if one.fitted_seconds is not None]
     return {
         "dataset": str(options.dataset),
         "class_names": list(done.dataset.class_names),
         "views": options.views,
         "seed": options.seed,
         "seconds_per_mesh_median": statistics.median(one.seconds for one in done.dataset.judged),
+        "seconds_per_mesh_fitted_median": statistics.median(fitted) if fitted else None,
         "seconds_training": round(done.training_s, 3),
         "seconds": round(time.monotonic() - done.started_s, 3),
         "skipped_count": len(done.dataset.skipped),

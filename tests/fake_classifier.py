@@ -31,6 +31,7 @@ class ExtentClassifier:
             scores=scores,
             picture_scores=scores,
             distances=None,
+            fits=None,
             descriptor=None,
             per_view=np.tile(np.array([1.0 - slab, slab], dtype=np.float32), (views, 1)),
             images=np.zeros((views, 8, 8, 3), dtype=np.uint8),

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -25,6 +26,7 @@ from shapewright.classification.file_format import (
     OPEN_PROBABILITIES,
     PROBABILITIES,
 )
+from shapewright.classification.synthesis import FITTED_CLASSES, BatchGenerator, Fit, fit_class
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor
 from shapewright.errors import ClassifierError
 from shapewright.mesh import TriangleMesh
@@ -49,7 +51,8 @@ class Classification:
         picture_probabilities: by the pictures alone, means over the views; highest first.
         scores: of the classes, see :mod:`shapewright.classification.evidence`; comparable between meshes.
         picture_scores: the same by the pictures alone.
-        distances: panorama distance of the nearest exemplar of each class; ``None`` without exemplars.
+        distances: panorama distance of the nearest exemplar or fit of each class; ``None`` without exemplars.
+        fits: of the classes that were fitted, instead of the nearest exemplar; ``None`` if nobody asked for that.
         descriptor: panorama descriptor of the mesh; ``None`` without exemplars.
         per_view: probabilities of each picture; columns in the order of the classifier's ``class_names``.
         images: the pictures that were looked at.
@@ -62,6 +65,7 @@ class Classification:
     scores: dict[str, float]
     picture_scores: dict[str, float]
     distances: dict[str, float] | None
+    fits: dict[str, Fit] | None
     descriptor: PanoramaDescriptor | None
     per_view: Float[np.ndarray, "N C"]
     images: UInt8[np.ndarray, "N H W 3"]
@@ -144,7 +148,12 @@ class Classifier:
         )
 
     def classify(
-        self, mesh: TriangleMesh, *, views: int = DEFAULT_VIEWS, rng: np.random.Generator | None = None
+        self,
+        mesh: TriangleMesh,
+        *,
+        views: int = DEFAULT_VIEWS,
+        rng: np.random.Generator | None = None,
+        models: Mapping[str, BatchGenerator] | None = None,
     ) -> Classification:
         """Draw a mesh from several sides, average the class probabilities (paper section 3.2), compare its geometry.
 
@@ -152,20 +161,33 @@ class Classifier:
             mesh: any triangle soup.
             views: pictures; the paper's 10 by default.
             rng: draws rotations and scales; by default a fresh ``default_rng(0)``, so answers repeat.
+            models: compiled models by digest: the most probable classes are fitted, not only compared with their
+                exemplars. It takes a second, and the parameter values come with it.
 
         Raises:
-            ClassifierError: fewer than one view.
+            ClassifierError: fewer than one view, or models without exemplars.
             MeshError: the mesh has no area, which only exemplars mind.
             RenderingError: no headless OpenGL.
         """
+        if models is not None and self.exemplars is None:
+            raise ClassifierError("a fit begins at exemplars, and there are none", where="models")
+        rng = rng or np.random.default_rng(0)
         images = self.render(mesh, views=views, rng=rng)
         per_view, open_per_view = self._run(images)
         pictured = per_view.mean(axis=0, dtype=np.float64)
         opened = open_per_view.mean(axis=0, dtype=np.float64)
-        descriptor, distances = None, None
+        descriptor, distances, fits = None, None, None
         if self.exemplars is not None:
             descriptor = panorama_descriptor(mesh.vertices, mesh.faces)
-            distances, _ = self.exemplars.nearest(self.exemplars.distances(descriptor))
+            every = self.exemplars.distances(descriptor)
+            distances, _ = self.exemplars.nearest(every)
+            if models is not None:
+                fits = {}
+                for number in np.argsort(-class_scores(opened, distances), kind="stable")[:FITTED_CLASSES]:
+                    fit = fit_class(descriptor, self.exemplars, every, int(number), models, rng)
+                    if fit is not None:
+                        fits[self.class_names[number]] = fit
+                        distances[number] = fit.distance
         scores = class_scores(opened, distances)
         probabilities = self._ranked(class_probabilities(pictured, distances))
         curve = self._curve("pictures" if distances is None else "geometry")
@@ -177,6 +199,7 @@ class Classifier:
             scores=self._ranked(scores),
             picture_scores=self._ranked(class_scores(opened)),
             distances=None if distances is None else self._ranked(distances, lowest_first=True),
+            fits=fits,
             descriptor=descriptor,
             per_view=per_view,
             images=images,

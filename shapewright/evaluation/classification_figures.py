@@ -74,6 +74,9 @@ def evidence_scores(dataset: JudgedDataset) -> dict[str, Float[np.ndarray, "N C"
         "pictures": np.stack([one.picture_scores for one in judged]),
         "panorama_to_default": -np.stack([one.base_distances for one in judged]),
     }
+    fitted = [one.fitted_scores for one in judged if one.fitted_scores is not None]
+    if fitted:
+        tables["fitted"] = np.stack(fitted)
     for name in judged[0].baselines:
         tables[name] = np.stack([one.baselines[name] for one in judged])
     return tables

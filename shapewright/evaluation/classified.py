@@ -30,22 +30,26 @@ class Judged:
         label: its class if the classifier knows it, else :data:`OTHER`.
         found: the classifier's answer, without its pictures.
         scores: of the classes by all evidence.
+        fitted_scores: the same with the most probable classes fitted; ``None`` if nobody asked for that.
         picture_scores: of the classes by the pictures alone, where ``none`` has a share.
         picture_probabilities: by the pictures alone, given that it is one of the classes.
         base_distances: panorama distance to the base instances of each class: the smallest over its models.
         baselines: probabilities of classes by other classifiers, by their names.
-        seconds: for reading apart: drawing, describing and comparing.
+        seconds: reading apart: for drawing, describing and comparing.
+        fitted_seconds: the same with the fits.
     """
 
     item: LabelledFile
     label: str
     found: "Found"
     scores: Float[np.ndarray, " C"]
+    fitted_scores: Float[np.ndarray, " C"] | None
     picture_scores: Float[np.ndarray, " C"]
     picture_probabilities: Float[np.ndarray, " C"]
     base_distances: Float[np.ndarray, " C"]
     baselines: Mapping[str, Float[np.ndarray, " C"]]
     seconds: float
+    fitted_seconds: float | None = None
 
 
 @dataclass(frozen=True)
@@ -84,6 +88,7 @@ def judge_dataset(
     bases: Mapping[str, Sequence[CompiledModel]],
     *,
     baselines: Mapping[str, Classifier] | None = None,
+    fitted: Mapping[str, CompiledModel] | None = None,
     views: int = DEFAULT_VIEWS,
     seed: int = 0,
     jobs: int = 1,
@@ -96,6 +101,7 @@ def judge_dataset(
         classifier: what is measured.
         bases: models whose base instances stand for each class, as the paper compares.
         baselines: other classifiers of the same classes that look at pictures of their own.
+        fitted: models by digest; each mesh is classified with fits, too.
         views: pictures of each mesh.
         seed: of the views.
         jobs: meshes that are read at once.
@@ -120,7 +126,7 @@ def judge_dataset(
             skipped.append(mesh)
             continue
         try:
-            judged.append(_judge(item, mesh, classifier, base_descriptors, others, views, seed))
+            judged.append(_judge(item, mesh, classifier, base_descriptors, others, fitted, views, seed))
         except MeshError as error:
             skipped.append(Skipped(item.file, error.message))
     if not judged:
@@ -134,6 +140,7 @@ def _judge(
     classifier: Classifier,
     bases: Mapping[str, Float[np.ndarray, "K D"]],
     others: Mapping[str, Classifier],
+    fitted: Mapping[str, CompiledModel] | None,
     views: int,
     seed: int,
 ) -> Judged:
@@ -146,6 +153,13 @@ def _judge(
     def row(values: Mapping[str, float]) -> Float[np.ndarray, " C"]:
         return np.array([values[name] for name in names])
 
+    fitted_scores = fitted_seconds = None
+    if fitted is not None:
+        started_s = time.perf_counter()
+        fitted_scores = row(
+            classifier.classify(mesh, views=views, rng=np.random.default_rng(seed), models=fitted).scores
+        )
+        fitted_seconds = time.perf_counter() - started_s
     said = {
         name: other.classify(mesh, views=views, rng=np.random.default_rng(seed)).picture_probabilities
         for name, other in others.items()
@@ -155,11 +169,13 @@ def _judge(
         label=item.class_name if item.class_name in names else OTHER,
         found=Found.of(found),
         scores=row(found.scores),
+        fitted_scores=fitted_scores,
         picture_scores=row(found.picture_scores),
         picture_probabilities=row(found.picture_probabilities),
         base_distances=np.array([panorama_distances(descriptor, bases[name]).min() for name in names]),
         baselines={name: row(probabilities) for name, probabilities in said.items()},
         seconds=seconds,
+        fitted_seconds=fitted_seconds,
     )
 
 

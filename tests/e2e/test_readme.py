@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 LESS = {
-    "variations=100, images_per_variation=5": "variations=16, images_per_variation=3",
+    "variations=100, images_per_variation=5, negatives=50": "variations=16, images_per_variation=3, negatives=8",
     "EstimationSettings.quick()": "EstimationSettings(**less)",
     "default_rng(0), 1000)": "default_rng(0), 10)",
 }
@@ -18,7 +18,9 @@ FEW = {"samples": 40, "surface_points": 200, "image_size": 48, "subdivision_step
 def blocks(repository: Path) -> list[str]:
     text = (repository / "README.md").read_text(encoding="utf-8")
     found = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
-    for block, wanted in zip(found, ("EstimationSettings.quick()", "default_rng(0), 1000)"), strict=True):
+    for block, wanted in zip(
+        found, ("EstimationSettings.quick()", "default_rng(0), 1000)", "InferenceSession"), strict=True
+    ):
         assert wanted in block, "the replacements below no longer fit the README"
     return found
 
@@ -38,6 +40,11 @@ def test_classify_and_rebuild(
     code = blocks(repository)[0].replace("examples/goblet.ply", str(repository / "examples" / "goblet.ply"))
     names = run(code, {"less": FEW})
     assert names["answer"].class_name == "glass_with_stem"
+    Path("classifier.onnx").write_bytes(names["trained"].onnx)
+    elsewhere = blocks(repository)[2].replace("examples/goblet.ply", str(repository / "examples" / "goblet.ply"))
+    names |= run(elsewhere, {})
+    assert names["probabilities"].shape == names["with_none"].shape == (10, 3)
+    assert names["about"]["class_names"] == list(names["models"])
     assert (tmp_path / "fitted.glb").read_bytes()[:4] == b"glTF"
     assert names["volume"] > 0
     printed = capsys.readouterr().out

@@ -44,7 +44,7 @@ def site(tmp_path: Path) -> Iterator[Site]:
 def network(monkeypatch: pytest.MonkeyPatch) -> ExtentClassifier:
     """What stands for every classifier's file."""
     made = ExtentClassifier()
-    monkeypatch.setattr("shapewright.classification.Classifier", lambda content: made)
+    monkeypatch.setattr("shapewright.classification.Classifier", lambda content, exemplars: made)
     monkeypatch.setattr("workers.classifiers._kept", {})
     return made
 
