@@ -26,7 +26,7 @@ class Style:
 
     Args:
         shader: name of the fragment shader without its ending.
-        oversampling: samples along each side of a pixel; even.
+        oversampling: samples along each side of a pixel; even, or 1 where speed counts more than smooth rims.
         line_strength: darkness of lines, for shaders that let one choose.
         background: red, green, blue in 0..1, for the same shaders.
         colors: of colour numbers 1 to 3.

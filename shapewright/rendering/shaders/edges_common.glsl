@@ -3,7 +3,7 @@
 
 uniform sampler2D surface;
 uniform int picture_size;      // pixels a side
-uniform int oversampling;      // samples a side of a pixel; even
+uniform int oversampling;      // samples a side of a pixel; even or 1
 uniform float sample_spacing;  // distance of two lattice points in units of the rotated object
 uniform float step_height;     // a jump in depth of this size is an edge
 layout(location = 0) out vec4 pixel;
@@ -48,7 +48,8 @@ float edge_between(uint a, uint b, vec2 along) {
 
 uint lattice[12];  // of 4 x 4 samples around the pixel, without the corners: rows of 2, 4, 4 and 2
 
-// Reads the lattice, whose inner 2 x 2 samples are the pixel; returns how much of the pixel is covered.
+// Reads the lattice, whose inner 2 x 2 samples are the pixel (or, with one sample a pixel, it and its neighbours to the
+// right and below); returns how much of the pixel is covered.
 // False in `anything` means that there is only background.
 float read_lattice(out bool anything) {
     int stride = max(oversampling / 2, 1);
