@@ -19,8 +19,8 @@ import numpy as np
 from cli.evaluation_options import cache_folder
 from cli.sources import load_classes, load_negatives
 from shapewright.classification import Classifier, FolderStore, TrainingSettings, train_classifier
-from shapewright.evaluation.classification_figures import figures_by, retrieval_figures
-from shapewright.evaluation.classified import OTHER, Found, Judged, JudgedDataset
+from shapewright.evaluation.classification_figures import Evidence, figures_by, retrieval_figures
+from shapewright.evaluation.classified import OTHER, Found, Judged, JudgedDataset, Said
 from shapewright.evaluation.datasets import LabelledFile, Skipped, load_each, read_dataset, spread
 from shapewright.mesh import TriangleMesh
 
@@ -54,29 +54,30 @@ def judged(classifier: Classifier, meshes: Meshes, views: int) -> JudgedDataset:
     rows = []
     for item, mesh in meshes:
         found = classifier.classify(mesh, views=views)
-        arrays = [
-            np.array([values[name] for name in names])
-            for values in (found.scores, found.picture_scores, found.picture_probabilities)
+        said = [
+            Said(*(np.array([values[name] for name in names]) for values in pair))
+            for pair in (
+                (found.probabilities, found.scores),
+                (found.picture_probabilities, found.picture_scores),
+            )
         ]
         label = item.class_name if item.class_name in names else OTHER
-        scores, picture_scores, probabilities = arrays
-        nothing = np.zeros(len(names))
-        rows.append(Judged(item, label, Found.of(found), scores, None, picture_scores, probabilities, nothing, {}, 0.0))
+        rows.append(Judged(item, label, Found.of(found), *said, None, np.zeros(len(names)), {}, 0.0))
     return JudgedDataset(names, tuple(rows), ())
 
 
 def figures(dataset: JudgedDataset) -> dict[str, float]:
     """Accuracy, AUROC and mean average precision by pictures and by all evidence."""
     out = {}
-    for name, rows in (
-        ("pictures", [one.picture_scores for one in dataset.judged]),
-        ("all", [one.scores for one in dataset.judged]),
+    for name, said in (
+        ("pictures", [one.by_pictures for one in dataset.judged]),
+        ("all", [one.by_all for one in dataset.judged]),
     ):
-        scores = np.stack(rows)
-        by = figures_by(dataset, scores)
+        evidence = Evidence.joined(said)
+        by = figures_by(dataset, evidence)
         out[f"accuracy_{name}"] = by.accuracy
         out[f"auroc_{name}"] = by.auroc_known or float("nan")
-        out[f"map_{name}"] = retrieval_figures(dataset, scores)[0].average_precision
+        out[f"map_{name}"] = retrieval_figures(dataset, evidence.scores)[0].average_precision
     return out
 
 

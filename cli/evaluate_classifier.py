@@ -23,6 +23,7 @@ from cli.evaluation_options import (
 )
 from cli.learning import kept_classifier
 from cli.sources import load_class, load_classes, load_negatives, read_object
+from models_store.library.shipped import list_classes, list_further_classes
 from shapewright.errors import EvaluationError
 from shapewright.progress import PartialProgress, Progress
 from shapewright.whole_file import write_whole
@@ -100,12 +101,12 @@ def classification(
       [bold]shapewright evaluate classification --dataset DIR -c classifier.onnx --json[/]
       [bold]shapewright evaluate classification --dataset DIR --baselines --seed 1[/]
     """
-    from shapewright.evaluation.classification_figures import evidence_scores, figures_by, unknown_figures
+    from shapewright.evaluation.classification_figures import evidence_of, figures_by, unknown_figures
 
     options = Options(dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache, fit)
     with _evaluated(options, report, [NO_VARIATION, RANDOM_WEIGHTS] if baselines else []) as (done, progress):
-        tables = evidence_scores(done.dataset)
-        figures = {name: figures_by(done.dataset, scores) for name, scores in tables.items()}
+        tables = evidence_of(done.dataset)
+        figures = {name: figures_by(done.dataset, evidence) for name, evidence in tables.items()}
         unknown = unknown_figures(done.dataset)
         _write_report(report, done, figures={name: one.to_dict() for name, one in figures.items()}, progress=progress)
     judged = done.dataset.judged
@@ -168,12 +169,13 @@ def retrieval(
       [bold]shapewright evaluate retrieval --dataset DIR --report retrieved.html[/]
       [bold]shapewright evaluate retrieval --dataset DIR -c classifier.onnx --json[/]
     """
-    from shapewright.evaluation.classification_figures import evidence_scores, retrieval_figures
+    from shapewright.evaluation.classification_figures import evidence_of, retrieval_figures
 
     options = Options(dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache)
     with _evaluated(options, report, [NO_VARIATION]) as (done, progress):
         measured = {
-            name: retrieval_figures(done.dataset, scores) for name, scores in evidence_scores(done.dataset).items()
+            name: retrieval_figures(done.dataset, evidence.scores)
+            for name, evidence in evidence_of(done.dataset).items()
         }
         curves = {name: mean.to_dict() for name, (mean, _) in measured.items()}
         _write_report(report, done, curves=curves, progress=progress)
@@ -292,11 +294,11 @@ def _baseline(name: str, settings: "TrainingSettings") -> "TrainingSettings":
 
 def _classes_of(labels: set[str]) -> "Mapping[str, Sequence[CompiledModel]]":
     """Load the shipped classes that the dataset has."""
-    every = load_classes(None)
-    learned = {name: models for name, models in every.items() if name in labels}
-    if len(learned) < 2:
+    further = list_further_classes()
+    names = [name for name in list_classes() if name in labels and name not in further]
+    if len(names) < 2:
         raise EvaluationError("fewer than two classes of the dataset ship; name a classifier", where="--dataset")
-    return learned
+    return load_classes(names)
 
 
 def _common(options: Options, done: Evaluated, report: Path | None) -> dict[str, Any]:

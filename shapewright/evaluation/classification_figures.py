@@ -1,6 +1,6 @@
 """Figures of a classification: how many are right, what is taken for what, and known against unknown."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,8 +8,26 @@ import numpy as np
 from jaxtyping import Float
 
 from shapewright.classification.calibration import auroc
-from shapewright.evaluation.classified import OTHER, Judged, JudgedDataset
+from shapewright.evaluation.classified import OTHER, Judged, JudgedDataset, Said
 from shapewright.evaluation.retrieval_metrics import RetrievalFigures, figures_of, mean_figures, relevance
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """One kind of evidence about all meshes of a dataset, a row a mesh; see :class:`Said`."""
+
+    probabilities: Float[np.ndarray, "N C"]
+    scores: Float[np.ndarray, "N C"]
+
+    @classmethod
+    def joined(cls, said: Sequence[Said]) -> "Evidence":
+        """Of single meshes."""
+        return cls(np.stack([one.probabilities for one in said]), np.stack([one.scores for one in said]))
+
+    @classmethod
+    def plain(cls, rows: Sequence[Float[np.ndarray, " C"]]) -> "Evidence":
+        """Where one number serves for both."""
+        return cls(np.stack(rows), np.stack(rows))
 
 
 @dataclass(frozen=True)
@@ -41,11 +59,12 @@ class ClassificationFigures:
         }
 
 
-def figures_by(dataset: JudgedDataset, scores: Float[np.ndarray, "N C"]) -> ClassificationFigures:
-    """Figures where the class is the one of the highest score, and the highest score says how known a mesh is."""
+def figures_by(dataset: JudgedDataset, evidence: Evidence) -> ClassificationFigures:
+    """Figures where the class is the most probable one, and the highest score says how known a mesh is."""
+    scores = evidence.scores
     names = dataset.class_names
     labels = np.array([one.label for one in dataset.judged])
-    guesses = np.array(names)[scores.argmax(axis=1)]
+    guesses = np.array(names)[evidence.probabilities.argmax(axis=1)]
     inside = labels != OTHER
     best = scores.max(axis=1)
     per_class = {}
@@ -66,19 +85,19 @@ def figures_by(dataset: JudgedDataset, scores: Float[np.ndarray, "N C"]) -> Clas
     )
 
 
-def evidence_scores(dataset: JudgedDataset) -> dict[str, Float[np.ndarray, "N C"]]:
-    """Scores of every mesh by each kind of evidence and each baseline."""
+def evidence_of(dataset: JudgedDataset) -> dict[str, Evidence]:
+    """What each kind of evidence and each baseline says about every mesh."""
     judged = dataset.judged
     tables = {
-        "all": np.stack([one.scores for one in judged]),
-        "pictures": np.stack([one.picture_scores for one in judged]),
-        "panorama_to_default": -np.stack([one.base_distances for one in judged]),
+        "all": Evidence.joined([one.by_all for one in judged]),
+        "pictures": Evidence.joined([one.by_pictures for one in judged]),
+        "panorama_to_default": Evidence.plain([-one.base_distances for one in judged]),
     }
-    fitted = [one.fitted_scores for one in judged if one.fitted_scores is not None]
-    if fitted:
-        tables["fitted"] = np.stack(fitted)
+    fits = [one.by_fits for one in judged if one.by_fits is not None]
+    if fits:
+        tables["fitted"] = Evidence.joined(fits)
     for name in judged[0].baselines:
-        tables[name] = np.stack([one.baselines[name] for one in judged])
+        tables[name] = Evidence.plain([one.baselines[name] for one in judged])
     return tables
 
 

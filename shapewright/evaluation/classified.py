@@ -29,10 +29,9 @@ class Judged:
         item: the mesh.
         label: its class if the classifier knows it, else :data:`OTHER`.
         found: the classifier's answer, without its pictures.
-        scores: of the classes by all evidence.
-        fitted_scores: the same with the most probable classes fitted; ``None`` if nobody asked for that.
-        picture_scores: of the classes by the pictures alone, where ``none`` has a share.
-        picture_probabilities: by the pictures alone, given that it is one of the classes.
+        by_all: said by all evidence.
+        by_pictures: said by the pictures alone.
+        by_fits: said by all evidence with the most probable classes fitted; ``None`` if nobody asked for that.
         base_distances: panorama distance to the base instances of each class: the smallest over its models.
         baselines: probabilities of classes by other classifiers, by their names.
         seconds: reading apart: for drawing, describing and comparing.
@@ -42,14 +41,26 @@ class Judged:
     item: LabelledFile
     label: str
     found: "Found"
-    scores: Float[np.ndarray, " C"]
-    fitted_scores: Float[np.ndarray, " C"] | None
-    picture_scores: Float[np.ndarray, " C"]
-    picture_probabilities: Float[np.ndarray, " C"]
+    by_all: "Said"
+    by_pictures: "Said"
+    by_fits: "Said | None"
     base_distances: Float[np.ndarray, " C"]
     baselines: Mapping[str, Float[np.ndarray, " C"]]
     seconds: float
     fitted_seconds: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Said:
+    """What one kind of evidence says about a mesh, in the order of the class names.
+
+    Attributes:
+        probabilities: of the classes, given that it is one of them; the highest is the answer.
+        scores: of the classes, comparable between meshes; the highest says how known the mesh is.
+    """
+
+    probabilities: Float[np.ndarray, " C"]
+    scores: Float[np.ndarray, " C"]
 
 
 @dataclass(frozen=True)
@@ -153,13 +164,12 @@ def _judge(
     def row(values: Mapping[str, float]) -> Float[np.ndarray, " C"]:
         return np.array([values[name] for name in names])
 
-    fitted_scores = fitted_seconds = None
+    by_fits = fitted_seconds = None
     if fitted is not None:
         started_s = time.perf_counter()
-        fitted_scores = row(
-            classifier.classify(mesh, views=views, rng=np.random.default_rng(seed), models=fitted).scores
-        )
+        with_fits = classifier.classify(mesh, views=views, rng=np.random.default_rng(seed), models=fitted)
         fitted_seconds = time.perf_counter() - started_s
+        by_fits = Said(row(with_fits.probabilities), row(with_fits.scores))
     said = {
         name: other.classify(mesh, views=views, rng=np.random.default_rng(seed)).picture_probabilities
         for name, other in others.items()
@@ -168,10 +178,9 @@ def _judge(
         item=item,
         label=item.class_name if item.class_name in names else OTHER,
         found=Found.of(found),
-        scores=row(found.scores),
-        fitted_scores=fitted_scores,
-        picture_scores=row(found.picture_scores),
-        picture_probabilities=row(found.picture_probabilities),
+        by_all=Said(row(found.probabilities), row(found.scores)),
+        by_pictures=Said(row(found.picture_probabilities), row(found.picture_scores)),
+        by_fits=by_fits,
         base_distances=np.array([panorama_distances(descriptor, bases[name]).min() for name in names]),
         baselines={name: row(probabilities) for name, probabilities in said.items()},
         seconds=seconds,
