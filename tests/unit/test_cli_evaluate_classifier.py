@@ -9,7 +9,7 @@ from small_dataset import write_dataset
 
 from models_store.library.shipped import load_shipped
 
-SETTINGS = {"variations": 24, "images_per_variation": 3, "image_size": 128, "negatives": 8, "epochs": 20}
+SETTINGS = {"variations": 16, "images_per_variation": 2, "image_size": 128, "negatives": 8, "epochs": 15}
 
 
 @pytest.fixture(scope="module")
