@@ -11,16 +11,21 @@ is wrong costs work that is done twice, never a wrong result.
 import math
 from dataclasses import dataclass
 from datetime import datetime, timedelta
-from typing import Any
+from typing import Any, Final
 
-from sqlalchemy import ColumnElement, case, func, literal, select
-from sqlalchemy.orm import Session
+from sqlalchemy import ColumnElement, and_, case, exists, func, literal, or_, select
+from sqlalchemy.orm import Session, aliased
 
 from models_store.errors import NotFoundError, StaleClaim
 from models_store.job_events import add_event, add_state_event, update_job
 from models_store.job_kinds import JobKind, JobState
 from models_store.tables import JobRow
 from models_store.text import check_id, storable
+
+
+QUIET: Final = timedelta(seconds=3)
+"""So long nobody's job may have waited or ended before a worker takes a part of another job: who classifies one mesh
+after the other shall not find the worker busy in between."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +53,10 @@ class JobError:
 def claim(session: Session, job_id: str, *, now: datetime, lease: timedelta, worker: str = "") -> Claim | None:
     """Take a queued job; of any number of workers that try, one gets it.
 
-    Returns ``None`` if it is not queued (taken, ended, or not there): a delivery without a job is harmless.
+    A part of another job is given out only while that job runs and no other work is wanted.
+
+    Returns ``None`` if it is not queued (taken, ended, or not there), or not given out: a delivery without a job is
+    harmless.
     """
     try:
         check_id("job", job_id)
@@ -56,7 +64,7 @@ def claim(session: Session, job_id: str, *, now: datetime, lease: timedelta, wor
         return None
     job = update_job(
         session,
-        [JobRow.id == job_id, JobRow.state == JobState.QUEUED],
+        [JobRow.id == job_id, JobRow.state == JobState.QUEUED, or_(JobRow.parent_id.is_(None), _is_wanted(now))],
         {
             "state": JobState.RUNNING,
             "token": JobRow.token + 1,
@@ -79,6 +87,23 @@ def claim(session: Session, job_id: str, *, now: datetime, lease: timedelta, wor
         result_id=job.result_id,
         payload=dict(job.payload),
     )
+
+
+def others_wait(session: Session, *, now: datetime) -> bool:
+    """Whether somebody's own job waits, or has just ended: who works on a part of another job gives way."""
+    return bool(session.scalar(select(_others_wait(now))))
+
+
+def _is_wanted(now: datetime) -> ColumnElement[bool]:
+    parent = aliased(JobRow)
+    parent_runs = exists().where(parent.id == JobRow.parent_id, parent.state == JobState.RUNNING)
+    return and_(parent_runs, ~_others_wait(now))
+
+
+def _others_wait(now: datetime) -> ColumnElement[bool]:
+    other = aliased(JobRow)
+    waits = or_(other.state == JobState.QUEUED, other.finished_at > now - QUIET)
+    return exists().where(other.parent_id.is_(None), waits)
 
 
 def renew(session: Session, held: Claim, *, now: datetime, lease: timedelta) -> bool:

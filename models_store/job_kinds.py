@@ -8,6 +8,7 @@ class JobKind(StrEnum):
     """What a job does."""
 
     TRAIN_CLASSIFIER = "train_classifier"
+    DESCRIBE_VARIATIONS = "describe_variations"
     CLASSIFY = "classify"
     ESTIMATE = "estimate"
     RENDER_THUMBNAIL = "render_thumbnail"

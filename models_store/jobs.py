@@ -46,6 +46,7 @@ def create_job(
     *,
     now: datetime,
     max_attempts: int = 3,
+    parent_id: str | None = None,
 ) -> JobRow:
     """Add a queued job. Commit, then announce it with :func:`models_store.broker.send_wakeup`.
 
@@ -56,9 +57,11 @@ def create_job(
         payload: ids of what the work needs; no data.
         now: the time, with a zone.
         max_attempts: how often it may be claimed before it counts as failed.
+        parent_id: id of the job that this one is a part of; see :mod:`models_store.parts`.
     """
     job = JobRow(
         id=new_id(),
+        parent_id=parent_id,
         kind=kind,
         state=JobState.QUEUED,
         payload=payload,
@@ -97,15 +100,16 @@ def list_jobs(
     *,
     state: JobState | None = None,
     kind: JobKind | None = None,
+    parent_id: str | None = None,
     limit: int = 50,
     cursor: str | None = None,
 ) -> Page[JobRow]:
-    """One page of jobs, newest first.
+    """One page of jobs, newest first: those that somebody asked for, or the parts of one of them.
 
     Raises:
         CursorError: a cursor of somewhere else, or a limit out of range.
     """
-    query = select(JobRow)
+    query = select(JobRow).where(JobRow.parent_id == parent_id)  # no parent is "IS NULL"
     if state is not None:
         query = query.where(JobRow.state == state)
     if kind is not None:

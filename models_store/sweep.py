@@ -3,16 +3,19 @@
 Any number of sweepers may run at the same time; every step is a conditional update.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from typing import Final
 
 from sqlalchemy import Text, and_, case, func, literal, or_, select, update
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import Session, aliased
 
 from models_store.claims import JobError, back_to_queue, error_values
+from models_store.errors import JobFinishedError
 from models_store.job_events import add_state_event, update_job
-from models_store.job_kinds import JobKind, JobState
+from models_store.job_kinds import FINAL_STATES, JobKind, JobState
+from models_store.jobs import request_cancel
 from models_store.tables import JobRow
 
 BATCH: Final = 50
@@ -49,6 +52,7 @@ def sweep(session: Session, *, now: datetime, wakeup_after: timedelta) -> Sweep:
     """
     done = Sweep()
     _end_leases(session, now, done)
+    _end_parts(session, now)
     _pick_wakeups(session, now, wakeup_after, done)
     return done
 
@@ -72,8 +76,20 @@ def _end_leases(session: Session, now: datetime, done: Sweep) -> None:
         outcome.get(job.state, done.requeued).append(job.id)
 
 
+def _end_parts(session: Session, now: datetime) -> None:
+    """Ask the parts of jobs that have ended to stop."""
+    parent = aliased(JobRow)
+    query = select(JobRow.id).join(parent, parent.id == JobRow.parent_id)
+    query = query.where(parent.state.in_(FINAL_STATES), JobRow.state.not_in(FINAL_STATES), ~JobRow.cancel_requested)
+    for job_id in session.scalars(query.order_by(JobRow.id).limit(BATCH)).all():
+        with suppress(JobFinishedError):  # in between
+            request_cancel(session, job_id, now=now)
+
+
 def _pick_wakeups(session: Session, now: datetime, wakeup_after: timedelta, done: Sweep) -> None:
-    due = and_(JobRow.state == JobState.QUEUED, or_(JobRow.next_wakeup_at <= now, JobRow.next_wakeup_at.is_(None)))
+    # parts are announced by the worker of their job, which would otherwise do them itself
+    queued = and_(JobRow.state == JobState.QUEUED, JobRow.parent_id.is_(None))
+    due = and_(queued, or_(JobRow.next_wakeup_at <= now, JobRow.next_wakeup_at.is_(None)))
     for job_id in session.scalars(select(JobRow.id).where(due).order_by(JobRow.created_at).limit(BATCH)).all():
         values = {"next_wakeup_at": now + wakeup_after}
         job = update_job(session, [JobRow.id == job_id, due], values, event=False)

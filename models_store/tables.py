@@ -75,7 +75,8 @@ class JobRow(Base):
     """A piece of long work.
 
     ``token`` is the fencing token: it grows with every claim, and a write that carries an older one is refused.
-    ``event_count`` numbers the events of the job without gaps.
+    ``event_count`` numbers the events of the job without gaps. A row with ``parent_id`` is a part of another job, see
+    :mod:`models_store.parts` (no foreign key: SQLite adds none to a table that is there).
     """
 
     __tablename__ = "jobs"
@@ -83,9 +84,11 @@ class JobRow(Base):
         Index(None, "created_at", "id"),
         Index(None, "state", "lease_expires_at"),
         Index(None, "state", "next_wakeup_at"),
+        Index(None, "finished_at"),
     )
 
     id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    parent_id: Mapped[str | None] = mapped_column(String(32), index=True)
     kind: Mapped[JobKind]
     state: Mapped[JobState]
     payload: Mapped[dict[str, Any]]

@@ -101,7 +101,9 @@ def require_json(request: Request) -> None:
 
 
 ServicesDep = Annotated[Services, Depends(get_services)]
-IdPath = Annotated[str, Path(min_length=1, max_length=128, pattern=r"^[0-9A-Za-z_-]+$")]
+_ID_PATTERN = r"^[0-9A-Za-z_-]+$"
+IdPath = Annotated[str, Path(min_length=1, max_length=128, pattern=_ID_PATTERN)]
+IdQuery = Annotated[str | None, Query(min_length=1, max_length=128, pattern=_ID_PATTERN)]
 LimitQuery = Annotated[int, Query(ge=1, le=MAX_LIMIT, description="Most items of a page.")]
 CursorQuery = Annotated[
     str | None, Query(max_length=500, description="`next_cursor` of the page before; none for the first page.")

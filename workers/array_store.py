@@ -2,7 +2,7 @@
 
 import io
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import structlog
@@ -10,6 +10,7 @@ import structlog
 from models_store.artifacts import ArtifactStore
 from models_store.errors import ArtifactError, ArtifactNotFoundError
 from shapewright.classification.array_store import mapped_array, npy_bytes
+from workers.context import JobContext
 
 log = structlog.get_logger(__name__)
 
@@ -29,6 +30,11 @@ class ArtifactArrays:
         self._artifacts = artifacts
         self._cache = cache
         self._unsaved: dict[str, np.ndarray] = {}
+
+    @classmethod
+    def of(cls, context: JobContext) -> Self:
+        """The arrays of the installation that a job belongs to."""
+        return cls(context.artifacts, context.settings.data_dir / "cache")
 
     def get(self, key: str) -> np.ndarray | None:
         """The array, mapped into memory if its file can be; ``None`` if there is none or it is damaged.

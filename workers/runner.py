@@ -20,7 +20,7 @@ from models_store.session import OUTAGES, Database
 from shapewright.errors import Cancelled, ShapewrightError
 from workers.context import JobContext, Outcome, WorkerProgress, utc_now
 from workers.settings import WorkerSettings
-from workers.stopping import StopNotice, WorkerStopping
+from workers.stopping import GivingWay, StopNotice, WorkerStopping
 from workers.tasks import TASKS
 
 log = structlog.get_logger(__name__)
@@ -107,8 +107,8 @@ class Runner:
             outcome = TASKS[held.kind](context)
         except (StaleClaim, *OUTAGES):
             raise
-        except WorkerStopping:
-            log.info("worker stops, job goes back to the queue")
+        except (WorkerStopping, GivingWay) as reason:
+            log.info("job goes back to the queue", reason=type(reason).__name__)
             return lambda session: claims.release(session, held, now=self._clock()), None
         except Cancelled:
             log.info("job cancelled")

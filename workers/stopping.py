@@ -12,6 +12,10 @@ class WorkerStopping(Exception):  # noqa: N818 - a planned stop, not an error
     """The worker stops; the job goes back to the queue."""
 
 
+class GivingWay(Exception):  # noqa: N818 - no error either
+    """Other work is wanted more; the job goes back to the queue."""
+
+
 class StopNotice:
     """A deadline in memory that a process shares with the children it forks.
 

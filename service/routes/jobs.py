@@ -8,7 +8,7 @@ from starlette.concurrency import run_in_threadpool
 
 from models_store import jobs
 from models_store.job_kinds import JobKind, JobState
-from service.dependencies import CursorQuery, IdPath, LimitQuery, ServicesDep, now
+from service.dependencies import CursorQuery, IdPath, IdQuery, LimitQuery, ServicesDep, now
 from service.event_stream import job_events, read_events
 from service.routes import problems
 from service.schemas.jobs import JobOut, JobPageOut
@@ -32,12 +32,13 @@ def list_jobs(
     services: ServicesDep,
     state: Annotated[JobState | None, Query(description="Only jobs in this state.")] = None,
     kind: Annotated[JobKind | None, Query(description="Only jobs of this kind.")] = None,
+    parent_id: Annotated[IdQuery, Query(description="The parts of this job, which are not listed else.")] = None,
     limit: LimitQuery = 50,
     cursor: CursorQuery = None,
 ) -> Any:
     """List the jobs, newest first."""
     with services.database.reading() as session:
-        page = jobs.list_jobs(session, state=state, kind=kind, limit=limit, cursor=cursor)
+        page = jobs.list_jobs(session, state=state, kind=kind, parent_id=parent_id, limit=limit, cursor=cursor)
     return JobPageOut(items=[JobOut.from_row(row) for row in page.items], next_cursor=page.next_cursor)
 
 

@@ -10,6 +10,7 @@ from service.schemas.common import Moment, OutBody, PageOut
 
 RESULT_PATHS = {
     JobKind.TRAIN_CLASSIFIER: "/v1/classifiers",
+    JobKind.DESCRIBE_VARIATIONS: "/v1/classifiers",
     JobKind.CLASSIFY: "/v1/classifications",
     JobKind.ESTIMATE: "/v1/estimations",
     JobKind.RENDER_THUMBNAIL: "/v1/models",
@@ -38,6 +39,7 @@ class JobOut(OutBody):
     """A piece of long work, as its row says."""
 
     id: str
+    parent_id: str | None = Field(description="The job that this one is a part of.")
     kind: JobKind
     state: JobState
     attempt: int = Field(description="How often a worker has taken the job.")
@@ -60,6 +62,7 @@ class JobOut(OutBody):
             error = JobErrorOut(title=row.error_title, detail=row.error_detail or "", where=row.error_where)
         return cls(
             id=row.id,
+            parent_id=row.parent_id,
             kind=row.kind,
             state=row.state,
             attempt=row.attempt,

@@ -1,5 +1,6 @@
 """The tasks themselves, run in this process: what they keep, what they reuse, what they say when it fails."""
 
+import shutil
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -14,8 +15,10 @@ from worker_support import QUICK, Site, brick, now, rod
 
 from models_store import catalog
 from models_store.artifacts import ArtifactStore
+from models_store.claims import QUIET
 from models_store.errors import ArtifactError
 from models_store.jobs import JobState, request_cancel
+from models_store.parts import part_states
 from models_store.tables import ClassifierRow
 from shapewright.classification.exemplars import Exemplars
 from shapewright.estimation import EstimationSettings, PanoramaBank, estimate
@@ -221,6 +224,18 @@ class Watched(ArtifactStore):
         return {key.split("/")[-2] for key in self.arrays if key.startswith(f"{kind}/")}
 
 
+class Interrupting(ArtifactStore):
+    """A store that does something when an array is looked for."""
+
+    def __init__(self, real: ArtifactStore, before: Callable[[], object]) -> None:
+        super().__init__(real._store, real._folder)
+        self._before = before
+
+    def local_copy(self, key: str, cache: Path) -> Path:
+        self._before()
+        return super().local_copy(key, cache)
+
+
 def queue_training(site: Site, models: list[ProceduralModel], **settings: Any) -> ClassifierRow:
     identifiers = [site.add_model(model) for model in models]
     with site.database.writing() as session:
@@ -262,6 +277,55 @@ def test_a_cancelled_training_goes_on_where_it_was(site: Site) -> None:
     assert stopped.arrays
     assert not set(stopped.arrays) & set(rest.arrays)
     assert rod().digest[:32] in rest.models("features")
+
+
+def parts_of(site: Site, job_id: str) -> dict[str, JobState]:
+    with site.database.reading() as session:
+        return part_states(session, job_id)
+
+
+def test_parts_of_a_training_are_done_by_other_workers(site: Site) -> None:
+    """What the training's worker finds done it does not do again, and the classifier is the same."""
+    alone = queue_training(site, [brick(), rod()])
+    succeed(site, alone.job_id, site.artifacts)
+    shutil.rmtree(Path(site.settings.data_dir) / "artifacts" / "features")
+    shared = queue_training(site, [brick(), rod()])
+    elsewhere = Watched(site.artifacts)
+
+    def help_once(key: str) -> None:
+        parts = parts_of(site, shared.job_id)
+        if JobState.SUCCEEDED not in parts.values():
+            run(site, next(part for part, state in parts.items() if state is JobState.QUEUED), elsewhere)
+
+    time.sleep(QUIET.total_seconds())  # the first training has just ended
+    own = Watched(site.artifacts, help_once)
+    succeed(site, shared.job_id, own)
+    assert list(parts_of(site, shared.job_id).values()) == [JobState.SUCCEEDED]
+    assert len(elsewhere.arrays) == 1
+    assert not set(elsewhere.arrays) & set(own.arrays)
+    with site.database.reading() as session:
+        first, second = (catalog.get_classifier(session, row.id) for row in (alone, shared))
+    assert first.metrics == second.metrics
+
+
+def test_a_part_gives_way_and_one_that_fails_is_done_by_the_training(site: Site) -> None:
+    training = queue_training(site, [brick(), rod()])
+    tried: list[str] = []
+
+    def help_badly(key: str) -> None:
+        parts = parts_of(site, training.job_id)
+        if tried:
+            return
+        first, second = [part for part, state in parts.items() if state is JobState.QUEUED][:2]
+        run(site, first, Full(site.artifacts, "features/"))
+        tried.append(first)
+
+        run(site, second, Interrupting(site.artifacts, lambda: site.queue_thumbnail(site.add_model(slab()))))
+        assert parts_of(site, training.job_id)[second] is JobState.QUEUED
+
+    succeed(site, training.job_id, Watched(site.artifacts, help_badly))
+    assert parts_of(site, training.job_id) == {tried[0]: JobState.FAILED}
+    assert "could not be stored" in site.job(tried[0]).error_detail
 
 
 def test_a_damaged_array_is_computed_anew(site: Site) -> None:

@@ -6,6 +6,7 @@ from typing import Final
 from models_store.job_kinds import JobKind
 from workers.context import JobContext, Outcome
 from workers.tasks.classify import classify
+from workers.tasks.describe_variations import describe_variations
 from workers.tasks.estimate import estimate
 from workers.tasks.index_collection import index_collection
 from workers.tasks.render_thumbnail import render_thumbnail
@@ -14,6 +15,7 @@ from workers.tasks.train_classifier import train_classifier
 
 TASKS: Final[Mapping[JobKind, Callable[[JobContext], Outcome]]] = {
     JobKind.TRAIN_CLASSIFIER: train_classifier,
+    JobKind.DESCRIBE_VARIATIONS: describe_variations,
     JobKind.CLASSIFY: classify,
     JobKind.ESTIMATE: estimate,
     JobKind.RENDER_THUMBNAIL: render_thumbnail,

@@ -6,35 +6,28 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from models_store import catalog
+from models_store.job_kinds import JobKind
+from shapewright.progress import PartialProgress, Progress
 from workers.array_store import ArtifactArrays
-from workers.context import JobContext, Outcome, with_tuples
+from workers.context import JobContext, Outcome
 from workers.finite import finite
+from workers.learning_plans import LearningPlan, learning_plan
+from workers.shared_parts import SharedParts
 
 if TYPE_CHECKING:
     from shapewright.classification.exemplars import Exemplars
-    from shapewright.modeling import CompiledModel
 
 
 def train_classifier(context: JobContext) -> Outcome:
     """Train on all models of the classifier's row, grouped by class; what was computed before is read again."""
-    from shapewright.classification import TrainingSettings
-    from shapewright.classification import train_classifier as train
+    from shapewright.classification.training import IMAGES_SHARE, learn
 
     classifier_id = str(context.claim.payload["classifier_id"])
-    with context.database.reading() as session:
-        row = catalog.get_classifier(session, classifier_id)
     context.progress.report(0.0, "compiling models")
-    models_by_class: dict[str, list[CompiledModel]] = {}
-    for model_id in row.model_ids:
-        model = context.load_model(model_id)
-        models_by_class.setdefault(model.class_name, []).append(model.compile())
-    trained = train(
-        models_by_class,
-        TrainingSettings(**with_tuples(row.settings)),
-        context.progress,
-        negatives=[context.load_model(model_id).compile() for model_id in row.negative_model_ids or ()],
-        store=ArtifactArrays(context.artifacts, context.settings.data_dir / "cache"),
-    )
+    work = learning_plan(context, classifier_id)
+    store = ArtifactArrays.of(context)
+    _draw_and_describe(context, work, store, PartialProgress(context.progress, 0.0, IMAGES_SHARE))
+    trained = learn(work.plan, work.settings, store, PartialProgress(context.progress, IMAGES_SHARE, 1.0))
     onnx_key = context.own_key(f"classifiers/{classifier_id}", "onnx")
     keys = [onnx_key]
     exemplars_key = None
@@ -53,6 +46,31 @@ def train_classifier(context: JobContext) -> Outcome:
         seconds=context.seconds,
     )
     return Outcome(record, tuple(keys))
+
+
+def _draw_and_describe(context: JobContext, work: LearningPlan, store: ArtifactArrays, progress: Progress) -> None:
+    """Compute what the store lacks, together with workers that have nothing else to do."""
+    from shapewright.classification.chunks import is_stored, store_chunk
+
+    def missing() -> list[int]:
+        backbone = work.extractor.backbone
+        return [
+            number
+            for number, (chunk, described) in enumerate(work.plan.chunks)
+            if not is_stored(chunk, work.settings, backbone, store, described)
+        ]
+
+    def compute(number: int, part: Progress) -> None:
+        chunk, described = work.plan.chunks[number]
+        store_chunk(chunk, work.settings, work.extractor, store, described=described, progress=part)
+
+    numbers = missing()
+    identifier = context.claim.payload["classifier_id"]
+    payloads = [{"classifier_id": identifier, "chunk": number} for number in numbers]
+    for index, done in SharedParts(context, JobKind.DESCRIBE_VARIATIONS, payloads).mine(progress):
+        compute(numbers[index], PartialProgress(progress, done, done + 1 / len(numbers)))
+    for number in missing():  # what failed at another worker, where this one says why if it fails again
+        compute(number, PartialProgress(progress, 1.0, 1.0))
 
 
 def _file_content(exemplars: "Exemplars") -> bytes:

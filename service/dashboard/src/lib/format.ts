@@ -78,6 +78,7 @@ export function count(value: number, singular: string, plural = `${singular}s`):
 
 const KINDS: Record<JobKind, string> = {
   train_classifier: "Train classifier",
+  describe_variations: "Draw variations",
   classify: "Classify",
   estimate: "Estimate",
   render_thumbnail: "Draw thumbnail",

@@ -1,0 +1,57 @@
+"""Parts of a running job: pieces that any worker may take, as jobs of their own.
+
+Whoever works on the job adds its parts, withdraws and does one after the other itself, and invites others to take
+some (:func:`models_store.broker.send_wakeup`); the sweeper announces none. A part's outcome is something that the job
+finds where it looks for it, such as an array in a store, so a part that is lost or fails costs time and nothing else.
+"""
+
+from collections.abc import Sequence
+from datetime import datetime
+from typing import Any, Final
+
+from sqlalchemy import delete, select
+from sqlalchemy.orm import Session
+
+from models_store.claims import Claim
+from models_store.job_kinds import JobKind, JobState
+from models_store.jobs import create_job
+from models_store.tables import JobRow
+
+MAX_ATTEMPTS: Final = 2
+
+
+def add_parts(
+    session: Session, held: Claim, kind: JobKind, payloads: Sequence[dict[str, Any]], *, now: datetime
+) -> list[str]:
+    """Queue parts of a job, in place of what an earlier attempt has left queued. Returns their ids.
+
+    Args:
+        session: a writing session.
+        held: the claim on the job.
+        kind: of all parts.
+        payloads: ids of what each part needs.
+        now: the time, with a zone.
+    """
+    _delete(session, JobRow.parent_id == held.job_id)
+    return [
+        create_job(
+            session, kind, held.result_id, payload, now=now, max_attempts=MAX_ATTEMPTS, parent_id=held.job_id
+        ).id
+        for payload in payloads
+    ]
+
+
+def withdraw_part(session: Session, part_id: str) -> bool:
+    """Take a part off the queue, to do its work outside of it. Returns whether nobody had taken it."""
+    return _delete(session, JobRow.id == part_id)
+
+
+def part_states(session: Session, job_id: str) -> dict[str, JobState]:
+    """The state of every part of a job, by its id."""
+    rows = session.execute(select(JobRow.id, JobRow.state).where(JobRow.parent_id == job_id))
+    return {part_id: state for part_id, state in rows}
+
+
+def _delete(session: Session, condition: Any) -> bool:
+    statement = delete(JobRow).where(condition, JobRow.state == JobState.QUEUED)
+    return bool(session.connection().execute(statement).rowcount)

@@ -1,0 +1,48 @@
+"""One part of a training: draw and describe a chunk of variations of one model, for the worker that trains."""
+
+from typing import TYPE_CHECKING
+
+from models_store import claims
+from shapewright.errors import ClassifierError
+from workers.array_store import ArtifactArrays
+from workers.context import JobContext, Outcome, utc_now
+from workers.learning_plans import learning_plan
+from workers.stopping import GivingWay
+
+if TYPE_CHECKING:
+    from sqlalchemy.orm import Session
+
+
+class _Helping:
+    """Progress of work that can wait (:class:`shapewright.progress.Progress`)."""
+
+    def __init__(self, context: JobContext) -> None:
+        self._context = context
+
+    def report(self, fraction: float, message: str) -> None:
+        """Note the progress, and stop when others want this worker.
+
+        Raises:
+            GivingWay: somebody's own job waits.
+        """
+        self._context.progress.report(fraction, message)
+        with self._context.database.reading() as session:
+            if claims.others_wait(session, now=utc_now()):
+                raise GivingWay
+
+
+def describe_variations(context: JobContext) -> Outcome:
+    """Leave the features, and the descriptors if wanted, where the training looks for them."""
+    from shapewright.classification.chunks import is_stored, store_chunk
+
+    work = learning_plan(context, str(context.claim.payload["classifier_id"]))
+    chunk, described = work.plan.chunks[int(context.claim.payload["chunk"])]
+    store = ArtifactArrays.of(context)
+    store_chunk(chunk, work.settings, work.extractor, store, described=described, progress=_Helping(context))
+    if not is_stored(chunk, work.settings, work.extractor.backbone, ArtifactArrays.of(context), described):
+        raise ClassifierError("what was computed could not be stored", where=f"chunk {chunk.number}")
+    return Outcome(_nothing)
+
+
+def _nothing(session: "Session") -> None:
+    """The arrays are the result; there is no row to write."""
