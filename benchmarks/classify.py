@@ -14,7 +14,6 @@ import statistics
 import tempfile
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -28,8 +27,8 @@ from shapewright.classification import (
     train_classifier,
 )
 from shapewright.distances.panorama import panorama_descriptor
+from shapewright.evaluation.datasets import LabelledFile, load_each
 from shapewright.mesh import TriangleMesh
-from shapewright.mesh_file import load_mesh
 
 FACES = 5000
 SCALE = 10_000
@@ -77,15 +76,13 @@ def sphere_like(faces: int) -> TriangleMesh:
 
 
 def meshes_a_second(classifier: Classifier, mesh: TriangleMesh, count: int) -> float:
-    """Files read in children, one ahead of the classifier, as the commands do it."""
-    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(1) as pool:
+    """Files read in children, ahead of the classifier, as the commands do it."""
+    with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "mesh.off"
         mesh.save(path)
         started_s = time.perf_counter()
-        coming = pool.submit(load_mesh, path, in_child=True)
-        for _ in range(count):
-            read = coming.result()
-            coming = pool.submit(load_mesh, path, in_child=True)
+        for _, read in load_each([LabelledFile("mesh.off", "", path)] * count):
+            assert isinstance(read, TriangleMesh)
             classifier.classify(read)
         return count / (time.perf_counter() - started_s)
 

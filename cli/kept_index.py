@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cli.evaluation_options import cache_folder
-from shapewright.errors import ClassifierError
+from shapewright.errors import ClassifierError, MeshFileError
 from shapewright.progress import Progress
 
 if TYPE_CHECKING:
@@ -102,8 +102,7 @@ def _kept(path: Path, classifier: "MeshClassifier", classifier_digest: str, *, s
 
 
 def _read(files: "dict[str, Path]", jobs: int) -> "Iterator[tuple[str, TriangleMesh | str]]":
-    from shapewright.evaluation.datasets import LabelledFile, Skipped, load_each
+    from shapewright.mesh_file import load_meshes
 
-    items = [LabelledFile(digest, "", file) for digest, file in files.items()]
-    for item, mesh in load_each(items, jobs=jobs):
-        yield item.file, mesh.reason if isinstance(mesh, Skipped) else mesh
+    for digest, mesh in zip(files, load_meshes(list(files.values()), jobs=jobs), strict=True):
+        yield digest, mesh.message if isinstance(mesh, MeshFileError) else mesh

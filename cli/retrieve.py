@@ -209,17 +209,18 @@ def _first_reason(indexed: IndexedFiles, files: list[Path]) -> str:
 
 def _draw(sheet: Path, shown: "list[RankedMesh]", mesh: Path | None, wanted: str) -> None:
     from cli.picture import save_picture
-    from shapewright.mesh_file import load_mesh
+    from shapewright.mesh_file import MeshReader, load_mesh
     from shapewright.rendering import LabelledMesh, compose_mesh_sheet
 
-    found = (
-        LabelledMesh(load_mesh(one.name, in_child=True), f"{place}. {Path(one.name).name}", one.caption)
-        for place, one in enumerate(shown, 1)
-    )
-    sections: list[tuple[str, Iterable[LabelledMesh]]] = [(f"meshes {wanted}", found)]
-    if mesh is not None:
-        sections.insert(0, ("query", [LabelledMesh(load_mesh(mesh, in_child=True), mesh.name)]))
-    pixels = compose_mesh_sheet(sections, size=SHEET_SIZE, columns=SHEET_COLUMNS)
+    with MeshReader() as reader:
+        found = (
+            LabelledMesh(load_mesh(one.name, reader=reader), f"{place}. {Path(one.name).name}", one.caption)
+            for place, one in enumerate(shown, 1)
+        )
+        sections: list[tuple[str, Iterable[LabelledMesh]]] = [(f"meshes {wanted}", found)]
+        if mesh is not None:
+            sections.insert(0, ("query", [LabelledMesh(load_mesh(mesh, reader=reader), mesh.name)]))
+        pixels = compose_mesh_sheet(sections, size=SHEET_SIZE, columns=SHEET_COLUMNS)
     sheet.parent.mkdir(parents=True, exist_ok=True)
     save_picture(pixels, sheet)
 

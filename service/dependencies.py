@@ -18,6 +18,7 @@ from service.compiled_models import CompiledModels
 from service.errors import Problem, ProblemError
 from service.metrics import JobCounts, Metrics
 from service.settings import ServiceSettings
+from shapewright.mesh_file import MeshReader
 
 log = structlog.stdlib.get_logger("shapewright.service")
 
@@ -30,6 +31,7 @@ class Services:
     database: Database
     artifacts: ArtifactStore
     celery: Celery
+    mesh_reader: MeshReader
     models: CompiledModels
     metrics: Metrics
     upload_limiter: anyio.CapacityLimiter
@@ -49,6 +51,7 @@ class Services:
             database=database,
             artifacts=ArtifactStore.open(settings.artifacts_url),
             celery=create_sender(settings),
+            mesh_reader=MeshReader(),
             models=CompiledModels(settings.compiled_models),
             metrics=Metrics(counts),
             upload_limiter=anyio.CapacityLimiter(settings.parallel_uploads),
@@ -63,6 +66,7 @@ class Services:
     def close(self) -> None:
         """Close what was opened."""
         self.celery.close()
+        self.mesh_reader.close()
         self.database.close()
 
 

@@ -22,6 +22,7 @@ from workers.stopping import StopNotice, WorkerStopping
 
 if TYPE_CHECKING:
     from shapewright.mesh import TriangleMesh
+    from shapewright.mesh_file import MeshReader
     from shapewright.modeling import ProceduralModel
 
 log = structlog.get_logger(__name__)
@@ -141,6 +142,7 @@ class JobContext:
     artifacts: ArtifactStore
     settings: WorkerSettings
     progress: WorkerProgress
+    reader: "MeshReader"
     started_s: float = field(default_factory=time.perf_counter)
 
     @property
@@ -166,7 +168,7 @@ class JobContext:
 
         with self.database.reading() as session:
             row = catalog.get_mesh(session, mesh_id)
-        return parse_mesh(self.artifacts.get(row.source_key), row.file_type)
+        return parse_mesh(self.artifacts.get(row.source_key), row.file_type, reader=self.reader)
 
 
 def with_tuples(settings: dict[str, Any]) -> dict[str, Any]:

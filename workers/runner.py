@@ -18,6 +18,7 @@ from models_store.job_kinds import JobState
 from models_store.jobs import get_job
 from models_store.session import OUTAGES, Database
 from shapewright.errors import Cancelled, ShapewrightError
+from shapewright.mesh_file import MeshReader
 from workers.context import JobContext, Outcome, WorkerProgress, utc_now
 from workers.settings import WorkerSettings
 from workers.stopping import GivingWay, StopNotice, WorkerStopping
@@ -49,6 +50,7 @@ class Runner:
         self._database = database or Database.connect(settings)
         self._artifacts = artifacts or ArtifactStore.open(settings.artifacts_url)
         self._clock = clock
+        self._reader = MeshReader()
         self._worker = f"{socket.gethostname()}:{os.getpid()}"
 
     def run(self, job_id: str) -> None:
@@ -68,8 +70,9 @@ class Runner:
                 self._work(held)
 
     def close(self) -> None:
-        """Close the database connections."""
+        """Close the database connections, and end the process that reads files."""
         self._database.close()
+        self._reader.close()
 
     def _claim(self, job_id: str) -> Claim | None:
         lease = timedelta(seconds=self._settings.lease_s)
@@ -83,7 +86,7 @@ class Runner:
         end = "lost"
         try:
             with WorkerProgress(self._database, held, self._settings, self._stop_notice, self._clock) as progress:
-                context = JobContext(held, self._database, self._artifacts, self._settings, progress)
+                context = JobContext(held, self._database, self._artifacts, self._settings, progress, self._reader)
                 write, outcome = self._carry_out(context)
                 try:
                     end = self._write(held, write).value

@@ -77,7 +77,8 @@ def _known(services: Services, data: bytes) -> MeshRow | None:
 
 def _read_and_store(services: Services, data: bytes, file_name: str, file_type: str) -> tuple[MeshRow, bool]:
     with services.metrics.upload_seconds.time():
-        mesh = parse_mesh(data, file_type, limits=ReadLimits(size_bytes=services.settings.max_mesh_bytes))
+        limits = ReadLimits(size_bytes=services.settings.max_mesh_bytes)
+        mesh = parse_mesh(data, file_type, limits=limits, reader=services.mesh_reader)
     return catalog.store_mesh(
         services.database,
         services.artifacts,

@@ -1,8 +1,7 @@
 """What a classifier, and the baselines beside it, say about every mesh of a dataset."""
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -131,7 +130,7 @@ def judge_dataset(
     }
     judged: list[Judged] = []
     skipped: list[Skipped] = []
-    for number, (item, mesh) in enumerate(_ahead(load_each(items, jobs=jobs))):
+    for number, (item, mesh) in enumerate(load_each(items, jobs=jobs)):
         progress.report(number / len(items), f"meshes: {number} of {len(items)}")
         if isinstance(mesh, Skipped):
             skipped.append(mesh)
@@ -192,15 +191,3 @@ def _base_descriptor(model: CompiledModel) -> Float[np.ndarray, " D"]:
     mesh = model.instance(model.base_values())
     descriptor: PanoramaDescriptor = panorama_descriptor(mesh.vertices, mesh.faces)
     return descriptor.to_array()
-
-
-_Loaded = tuple[LabelledFile, TriangleMesh | Skipped]
-
-
-def _ahead(loaded: Iterator[_Loaded]) -> Iterator[_Loaded]:
-    """The same, with the next mesh being read while the caller works on one."""
-    with ThreadPoolExecutor(1) as pool:
-        coming = pool.submit(next, loaded, None)
-        while (one := coming.result()) is not None:
-            coming = pool.submit(next, loaded, None)
-            yield one

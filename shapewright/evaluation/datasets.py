@@ -7,17 +7,15 @@ below its folder ``meshes``; a path that leads out of it is refused.
 import csv
 import reprlib
 from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from shapewright.errors import EvaluationError, MeshError
+from shapewright.errors import EvaluationError, MeshFileError
 from shapewright.mesh import TriangleMesh
-from shapewright.mesh_file import load_mesh
+from shapewright.mesh_file import load_meshes
 
 LABELS: Final = "labels.csv"
-_BLOCK: Final = 8
 
 
 @dataclass(frozen=True)
@@ -96,18 +94,9 @@ def spread(items: Sequence[LabelledFile], limit: int | None) -> tuple[LabelledFi
 
 
 def load_each(items: Sequence[LabelledFile], *, jobs: int = 1) -> Iterator[tuple[LabelledFile, TriangleMesh | Skipped]]:
-    """Read meshes in child processes with limits, ``jobs`` at a time; a few are held in memory at once."""
-    with ThreadPoolExecutor(jobs) as pool:
-        for start in range(0, len(items), _BLOCK * jobs):
-            block = items[start : start + _BLOCK * jobs]
-            yield from zip(block, pool.map(_load, block), strict=True)
-
-
-def _load(item: LabelledFile) -> TriangleMesh | Skipped:
-    try:
-        return load_mesh(item.path, in_child=True)
-    except MeshError as error:
-        return Skipped(item.file, error.message)
+    """Read meshes in child processes with limits; see :func:`shapewright.mesh_file.load_meshes`."""
+    for item, read in zip(items, load_meshes([item.path for item in items], jobs=jobs), strict=True):
+        yield item, Skipped(item.file, read.message) if isinstance(read, MeshFileError) else read
 
 
 def _located(root: Path, name: str) -> Path:

@@ -2,6 +2,7 @@
 
 import io
 from collections.abc import Iterator, Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +52,8 @@ def network(monkeypatch: pytest.MonkeyPatch) -> ExtentClassifier:
 
 def run(site: Site, job_id: str) -> None:
     settings = WorkerSettings(data_dir=site.settings.data_dir)
-    Runner(settings, StopNotice(), database=site.database, artifacts=site.artifacts).run(job_id)
+    with closing(Runner(settings, StopNotice(), database=site.database, artifacts=site.artifacts)) as runner:
+        runner.run(job_id)
 
 
 def upload(site: Site, name: str, mesh: TriangleMesh) -> str:

@@ -3,6 +3,7 @@
 import shutil
 import time
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -39,7 +40,10 @@ def site(tmp_path: Path) -> Iterator[Site]:
 
 def run(site: Site, job_id: str, artifacts: ArtifactStore | None = None) -> None:
     settings = WorkerSettings(data_dir=site.settings.data_dir, cancel_check_s=0.1, progress_interval_s=0.1)
-    Runner(settings, StopNotice(), database=site.database, artifacts=artifacts or site.artifacts).run(job_id)
+    with closing(
+        Runner(settings, StopNotice(), database=site.database, artifacts=artifacts or site.artifacts)
+    ) as runner:
+        runner.run(job_id)
 
 
 TRAINING = {"variations": 8, "images_per_variation": 4, "image_size": 64, "negatives": 4, "subdivision_steps": 1}

@@ -57,6 +57,20 @@ def test_meshes_are_told_apart(folder: Path) -> None:
     assert "slab" in table
 
 
+def test_a_folder_is_classified_without_what_cannot_be_used(folder: Path, tmp_path: Path) -> None:
+    for name in ("query-slab.obj", "query-lamp.off"):
+        (tmp_path / "meshes" / name).parent.mkdir(exist_ok=True)
+        (tmp_path / "meshes" / name).write_bytes((folder / name).read_bytes())
+    (tmp_path / "meshes" / "broken.ply").write_bytes(b"ply\nnot at all")
+    arguments = ("classify", tmp_path / "meshes", "-c", folder / "out/classifier.onnx", "--views", 4)
+    document = shapewright(*arguments, "--json").document
+    assert [Path(result["file"]).name for result in document["results"]] == ["query-lamp.off", "query-slab.obj"]
+    assert [result["class_name"] for result in document["results"]] == ["lamp", "slab"]
+    assert document["skipped_count"] == 1
+    assert document["skipped"][0]["file"].endswith("broken.ply")
+    assert f"broken.ply: {document['skipped'][0]['reason']}" in shapewright(*arguments).stderr
+
+
 def test_a_query_is_rebuilt_where_it_lies(folder: Path, tmp_path: Path) -> None:
     query = load_mesh(folder / "query-lamp.off")
     turn = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
@@ -122,6 +136,7 @@ def test_a_class_is_all_of_its_models() -> None:
         (("classify", "query-lamp.off", "-c", "missing.onnx"), "missing.onnx"),
         (("classify", "query-lamp.off", "-c", "query-lamp.off"), "query-lamp.off"),
         (("classify", "missing.off", "-c", "out/classifier.onnx"), "missing.off"),
+        (("classify", "unknown.json", "-c", "out/classifier.onnx"), "unknown.json"),
         (("estimate", "query-lamp.off", "-m", "nothing"), "neither a file nor a shipped model"),
         (("estimate", "query-lamp.off", "--class", "teapot"), "no such class ships"),
         (("estimate", "query-lamp.off"), "name models or a class"),

@@ -2,9 +2,11 @@ import base64
 import contextlib
 import json
 import os
+import signal
 import struct
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +18,7 @@ from hypothesis import strategies as st
 from shapewright.errors import MeshFileError
 from shapewright.mesh import TriangleMesh
 from shapewright.mesh_decode import decode_mesh
-from shapewright.mesh_file import DEFAULT_LIMITS, load_mesh, parse_mesh
+from shapewright.mesh_file import DEFAULT_LIMITS, MeshReader, load_mesh, parse_mesh
 from shapewright.mesh_sniff import READABLE_TYPES, check_content
 
 BALL = TriangleMesh.from_trimesh(trimesh.creation.icosphere(2)).cleaned()
@@ -232,19 +234,48 @@ def test_a_bomb_of_instances_stops_at_a_limit():
 
 def test_the_child_cannot_open_anything_once_it_reads():
     program = """
-from shapewright import mesh_decode, mesh_file_child
+from shapewright import mesh_decode, mesh_reader_process
 mesh_decode.decode_mesh = lambda *_: open("/etc/hostname")
-mesh_file_child.main()
+mesh_reader_process.main()
 """
-    request = {"file_type": "obj", "limits": vars(DEFAULT_LIMITS)}
+    request = {"file_type": "obj", "limits": vars(DEFAULT_LIMITS), "size": len(WRITTEN["obj"])}
     child = subprocess.run(
         [sys.executable, "-c", program],
         input=json.dumps(request).encode() + b"\n" + WRITTEN["obj"],
         capture_output=True,
         check=False,
     )
-    assert child.returncode != 0
+    assert json.loads(child.stdout) == {"status": 1, "size": 0}
     assert b"Too many open files" in child.stderr
+
+
+def test_one_reader_reads_many_files_and_outlives_bad_ones():
+    large = b"v 0.125 0.25 0.375\n" * 500_000 + WRITTEN["obj"]
+    with MeshReader() as reader:
+        for limits, reason in (
+            (replace(DEFAULT_LIMITS, memory_bytes=150 * 2**20), "memory"),
+            (replace(DEFAULT_LIMITS, wall_s=0.05), "more than"),
+            (replace(DEFAULT_LIMITS, faces=100), "320 faces"),
+        ):
+            with pytest.raises(MeshFileError, match=reason):
+                parse_mesh(large, "obj", limits=limits, reader=reader)
+            for file_type in ("obj", "glb"):
+                assert len(parse_mesh(WRITTEN[file_type], file_type, reader=reader).faces) == len(BALL.faces)
+        (process,) = reader._idle
+        os.kill(process._popen.pid, signal.SIGKILL)  # whatever befalls it
+        process._popen.wait()
+        with pytest.raises(MeshFileError, match="the reader is gone"):
+            parse_mesh(WRITTEN["off"], "off", reader=reader)
+        np.testing.assert_array_equal(parse_mesh(WRITTEN["off"], "off", reader=reader).faces, BALL.faces)
+
+
+def test_threads_share_a_reader():
+    types = ["obj", "off", "stl", "ply"] * 4
+    with MeshReader() as reader, ThreadPoolExecutor(3) as pool:
+        meshes = list(pool.map(lambda file_type: parse_mesh(WRITTEN[file_type], file_type, reader=reader), types))
+        assert len(reader._idle) == 1
+    assert [len(mesh.faces) for mesh in meshes] == [len(BALL.faces)] * len(types)
+    assert reader._idle == []
 
 
 def test_the_child_sees_none_of_our_environment(monkeypatch):

@@ -1,0 +1,163 @@
+"""Reading files of strangers: in child processes that can open nothing and are limited in memory and time."""
+
+import contextlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from shapewright.errors import MeshError, MeshFileError
+from shapewright.mesh import TriangleMesh
+from shapewright.mesh_decode import ReadLimits
+
+_WHERE = "reader process"
+
+
+class MeshReader:
+    """Reads many files, each in a child process of its own.
+
+    The children are forked from a process that has imported what reading takes, started with the first file: one
+    more file costs milliseconds beyond its reading. Threads may share a reader; what they read at the same time is
+    read by as many processes. Close it, or use it in a ``with`` statement.
+
+    Args:
+        kept: processes that wait for the next file.
+    """
+
+    def __init__(self, kept: int = 1) -> None:
+        self._kept = kept
+        self._idle: list[_Process] = []
+        self._lock = threading.Lock()
+
+    def __enter__(self) -> "MeshReader":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the processes that wait; reading one more file starts a new one."""
+        with self._lock:
+            idle, self._idle = self._idle, []
+        for process in idle:
+            process.end()
+
+    def parse(self, data: bytes, file_type: str, limits: ReadLimits) -> TriangleMesh:
+        """Read checked content of a normalised type; see :func:`shapewright.mesh_file.parse_mesh`.
+
+        Raises:
+            MeshFileError: as :func:`shapewright.mesh_decode.decode_mesh`, or the child ran out of memory or time.
+        """
+        with self._lock:
+            process = self._idle.pop() if self._idle else _Process()
+        try:
+            status, output = process.ask({"file_type": file_type, "limits": vars(limits)}, data, limits.wall_s)
+        except BaseException:
+            process.end()
+            raise
+        with self._lock:
+            keep = len(self._idle) < self._kept
+            if keep:
+                self._idle.append(process)
+        if not keep:
+            process.end()
+        return _mesh_of(status, output, limits)
+
+
+class _Process:
+    """A running :mod:`shapewright.mesh_reader_process`, for one file at a time."""
+
+    def __init__(self) -> None:
+        # the environment is made anew: no secrets of ours, and one thread, as each reserves address space
+        environment = {
+            "PATH": os.defpath,
+            "PYTHONPATH": str(Path(__file__).resolve().parents[1]),
+            "OPENBLAS_NUM_THREADS": "1",
+            "OMP_NUM_THREADS": "1",
+            "MKL_NUM_THREADS": "1",
+        }
+        self._popen = subprocess.Popen(
+            [sys.executable, "-P", "-s", "-B", "-m", "shapewright.mesh_reader_process"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            env=environment,
+            cwd="/",
+            process_group=0,  # so that it can be ended together with its child
+        )
+
+    def ask(self, request: dict[str, Any], data: bytes, timeout_s: float) -> tuple[int, bytes]:
+        """The status of the child that read this file, and what it wrote.
+
+        Raises:
+            MeshFileError: it took too long, or the process is gone; it is of no more use.
+        """
+        late = threading.Event()
+
+        def give_up() -> None:
+            late.set()
+            self._kill()
+
+        assert self._popen.stdin is not None
+        assert self._popen.stdout is not None
+        timer = threading.Timer(timeout_s, give_up)
+        timer.daemon = True
+        timer.start()
+        try:
+            self._popen.stdin.write(json.dumps(request | {"size": len(data)}).encode() + b"\n")
+            self._popen.stdin.write(data)
+            self._popen.stdin.flush()
+            header = json.loads(self._popen.stdout.readline())
+            output = self._popen.stdout.read(header["size"])
+            if len(output) < header["size"]:
+                raise EOFError
+        except (OSError, ValueError, EOFError):
+            reason = f"reading took more than {timeout_s:g} s" if late.is_set() else "the reader is gone"
+            raise MeshFileError(reason, where=_WHERE) from None
+        finally:
+            timer.cancel()
+        if late.is_set():  # just in time, but nobody is there for the next file
+            raise MeshFileError(f"reading took more than {timeout_s:g} s", where=_WHERE)
+        return header["status"], output
+
+    def end(self) -> None:
+        """End it, whatever it does."""
+        self._kill()
+        for pipe in (self._popen.stdin, self._popen.stdout):
+            with contextlib.suppress(OSError):  # what is left to be written goes nowhere
+                pipe.close()  # type: ignore[union-attr]
+        self._popen.wait()
+
+    def _kill(self) -> None:
+        if self._popen.poll() is None:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(self._popen.pid, signal.SIGKILL)
+
+
+def _mesh_of(status: int, output: bytes, limits: ReadLimits) -> TriangleMesh:
+    if status == -signal.SIGXCPU:
+        raise MeshFileError(f"reading took more than {limits.cpu_s} s of processor time", where=_WHERE)
+    if status != 0:
+        raise MeshFileError(
+            f"the reader broke off with status {status}; {limits.memory_bytes} bytes of memory may not be enough",
+            where=_WHERE,
+        )
+    header, _, body = output.partition(b"\n")
+    try:
+        answer = json.loads(header)
+        if "error" in answer:
+            raise MeshFileError(str(answer["error"]), where=answer["where"])
+        split = int(answer["vertices"]) * 24
+        vertices = np.frombuffer(body[:split], dtype=np.float64).reshape(-1, 3)
+        faces = np.frombuffer(body[split:], dtype=np.int64).reshape(-1, 3)
+        return TriangleMesh(vertices.copy(), faces.copy())
+    except MeshFileError:
+        raise
+    except (ValueError, KeyError, TypeError, MeshError):
+        raise MeshFileError("the reader gave no sensible answer", where=_WHERE) from None

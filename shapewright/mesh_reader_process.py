@@ -1,0 +1,93 @@
+"""The process behind :class:`shapewright.mesh_reader.MeshReader`: ``python -m shapewright.mesh_reader_process``.
+
+It has imported what reading takes, looks at no content itself, and forks a child for each file. The child limits
+itself, and can open no file and no connection, as no further descriptor is allowed. In: one line of JSON, then the
+file. Out: one line of JSON with the child's status, then what the child wrote: one line of JSON, then the arrays.
+"""
+
+import importlib
+import json
+import os
+import resource
+import sys
+import traceback
+from typing import Any, BinaryIO
+
+from shapewright import mesh_decode
+from shapewright.errors import MeshFileError
+
+
+def main() -> None:
+    """Answer requests from stdin on stdout, until there are no more."""
+    source, sink = sys.stdin.buffer, sys.stdout.buffer
+    while line := source.readline():
+        request = json.loads(line)
+        data = source.read(request["size"])
+        if request["file_type"] in ("ply", "glb", "gltf"):
+            _load_trimesh()
+        status, output = _in_child(request["file_type"], request["limits"], data)
+        sink.write(json.dumps({"status": status, "size": len(output)}).encode() + b"\n" + output)
+        sink.flush()
+
+
+def _in_child(file_type: str, limits: dict[str, Any], data: bytes) -> tuple[int, bytes]:
+    """What a child wrote that was given this file, and its status: negative for the signal that ended it."""
+    reading, writing = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            for descriptor in (0, 1, reading):  # what belongs to other files
+                os.close(descriptor)
+            with os.fdopen(writing, "wb") as sink:
+                _answer(file_type, limits, data, sink)
+        except BaseException:
+            traceback.print_exc()
+            os._exit(1)
+        os._exit(0)
+    os.close(writing)
+    with os.fdopen(reading, "rb") as source:
+        output = source.read()
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), output
+
+
+def _answer(file_type: str, limits: dict[str, Any], data: bytes, sink: BinaryIO) -> None:
+    _limit(resource.RLIMIT_AS, limits["memory_bytes"])
+    _limit(resource.RLIMIT_CPU, limits["cpu_s"], spare=1)  # a second between the signal and the kill
+    for kind in (resource.RLIMIT_CORE, resource.RLIMIT_FSIZE, resource.RLIMIT_NOFILE):
+        _limit(kind, 0)
+    try:
+        answer, body = _parse(file_type, limits, data)
+    except MemoryError:
+        reason = f"reading needs more than {limits['memory_bytes']} bytes of memory"
+        answer, body = {"error": reason, "where": "reader process"}, []
+    sink.write(json.dumps(answer).encode() + b"\n")
+    for part in body:
+        sink.write(part)
+
+
+def _parse(file_type: str, limits: dict[str, Any], data: bytes) -> tuple[dict[str, object], list[bytes]]:
+    try:
+        mesh = mesh_decode.decode_mesh(data, file_type, mesh_decode.ReadLimits(**limits))
+    except MeshFileError as error:
+        return {"error": error.message, "where": error.where}, []
+    counts: dict[str, object] = {"vertices": len(mesh.vertices), "faces": len(mesh.faces)}
+    return counts, [mesh.vertices.tobytes(), mesh.faces.tobytes()]
+
+
+def _load_trimesh() -> None:
+    """Import trimesh and what it imports only while reading, as a child can open no module."""
+    importlib.import_module("trimesh")
+    for name in ("trimesh.exchange.gltf", "trimesh.exchange.ply", "trimesh.visual.material", "PIL.Image"):
+        importlib.import_module(name)
+
+
+def _limit(kind: int, value: float, spare: int = 0) -> None:
+    _, most = resource.getrlimit(kind)
+    hard = int(value) + spare
+    if most != resource.RLIM_INFINITY:
+        hard = min(hard, most)
+    resource.setrlimit(kind, (min(int(value), hard), hard))
+
+
+if __name__ == "__main__":
+    main()
