@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 import numpy as np
 from services import logged_process
@@ -77,7 +78,7 @@ class Site:
     @contextmanager
     def worker(self, **environment: str) -> Iterator["subprocess.Popen[bytes]"]:
         """A worker as people start it, until the end of the block."""
-        command = [sys.executable, "-m", "celery", "-A", "workers.app", "worker"]
+        command = [sys.executable, "-m", "celery", "-A", "workers.app", "worker", "-n", f"{uuid4().hex}@%h"]
         env = self._environment | environment
         with logged_process(command, log=self.log, cwd=self.settings.data_dir, env=env) as process:
             yield process

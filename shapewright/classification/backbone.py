@@ -7,7 +7,7 @@ import hashlib
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import cached_property, lru_cache, partial
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -53,7 +53,7 @@ class Backbone:
     preprocessing: str
     graph: bytes
 
-    @property
+    @cached_property
     def key(self) -> str:
         """Name and the beginning of the graph's digest: what stored features belong to."""
         return f"{self.name}-{hashlib.sha256(self.graph).hexdigest()[:12]}"

@@ -4,6 +4,7 @@ import os
 import signal
 import time
 from collections.abc import Iterator
+from contextlib import closing
 from io import BytesIO
 from pathlib import Path
 from urllib.request import urlopen
@@ -11,11 +12,11 @@ from urllib.request import urlopen
 import pytest
 from PIL import Image
 from services import RedisServer, free_port
-from worker_support import Site, brick, children_of, is_alive, now
+from worker_support import Site, brick, children_of, is_alive, now, rod
 
 from models_store import catalog
 from models_store.broker import send_wakeup
-from models_store.jobs import JobState, request_cancel
+from models_store.jobs import JobState, list_jobs, request_cancel
 from shapewright.mesh_file import parse_mesh
 
 KINDS = ["embedded", pytest.param("production", marks=pytest.mark.services)]
@@ -123,6 +124,40 @@ def test_a_worker_that_is_told_to_stop_gives_its_job_back(embedded: Site) -> Non
     job = embedded.job(estimation.job_id)
     assert (job.state, job.attempt) == (JobState.QUEUED, 0)
     assert embedded.states(estimation.job_id) == ["queued", "running", "queued"]
+
+
+@pytest.mark.services
+def test_a_busy_worker_keeps_no_message_from_a_free_one(tmp_path: Path, postgres_url: str, redis_url: str) -> None:
+    site = Site(tmp_path, database_url=postgres_url, broker_url=redis_url, wakeup_after_s=600.0)
+    model_id = site.add_model(brick())
+    with closing(site), site.worker():
+        estimation = site.queue_estimation(200_000)
+        site.wait_until_working(estimation.job_id)
+        with site.worker():
+            for _ in range(4):
+                assert site.wait(site.queue_thumbnail(model_id)).state is JobState.SUCCEEDED
+        with site.database.writing() as session:
+            request_cancel(session, estimation.job_id, now=now())
+        site.wait(estimation.job_id)
+
+
+def test_free_workers_take_parts_of_a_training(site: Site) -> None:
+    settings = {
+        "variations": 256, "images_per_variation": 2, "image_size": 64, "subdivision_steps": 1, "negatives": 0,
+        "exemplars": False,
+    }  # fmt: skip
+    models = [site.add_model(brick()), site.add_model(rod())]
+    with site.worker(), site.worker():
+        with site.database.writing() as session:
+            training = catalog.request_classifier(session, models, settings, now=now())
+        send_wakeup(site.sender, training.job)
+        done = site.wait(training.job_id)
+    assert done.state is JobState.SUCCEEDED, done.error_detail
+    with site.database.reading() as session:
+        parts = list_jobs(session, parent_id=training.job_id).items
+        assert catalog.get_classifier(session, training.id).metrics["images"] == 2 * 256 * 2
+    assert {part.state for part in parts} == {JobState.SUCCEEDED}
+    assert {part.worker for part in parts}.isdisjoint({None, done.worker})
 
 
 @pytest.mark.services
