@@ -1230,7 +1230,7 @@ export interface components {
          * @description What a job does.
          * @enum {string}
          */
-        JobKind: "train_classifier" | "classify" | "estimate" | "render_thumbnail" | "index_collection" | "retrieve";
+        JobKind: "train_classifier" | "describe_variations" | "classify" | "estimate" | "render_thumbnail" | "index_collection" | "retrieve";
         /**
          * JobOut
          * @description A piece of long work, as its row says.
@@ -1238,6 +1238,11 @@ export interface components {
         JobOut: {
             /** Id */
             id: string;
+            /**
+             * Parent Id
+             * @description The job that this one is a part of.
+             */
+            parent_id: string | null;
             kind: components["schemas"]["JobKind"];
             state: components["schemas"]["JobState"];
             /**
@@ -3547,6 +3552,8 @@ export interface operations {
                 state?: components["schemas"]["JobState"] | null;
                 /** @description Only jobs of this kind. */
                 kind?: components["schemas"]["JobKind"] | null;
+                /** @description The parts of this job, which are not listed else. */
+                parent_id?: string | null;
                 /** @description Most items of a page. */
                 limit?: number;
                 /** @description `next_cursor` of the page before; none for the first page. */
