@@ -324,7 +324,7 @@ def test_from_an_unknown_mesh_to_its_parameters(new_page: Callable[..., Page], l
     expect(pictures).to_be_visible()
     expect(pictures).to_have_js_property("complete", True)
     assert pictures.evaluate("image => image.naturalWidth") >= 224
-    expect(page.get_by_label("Model", exact=True).locator("option:checked")).to_have_text("Lamp (class found)")
+    expect(page.get_by_label("Model", exact=True).locator("option:checked")).to_have_text("Lamp (most probable)")
 
     page.get_by_label("Samples").fill("60")
     page.get_by_role("button", name="Estimate parameters").click()

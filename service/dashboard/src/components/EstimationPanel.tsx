@@ -13,7 +13,7 @@ import { Problem } from "./Problem";
 
 interface EstimationPanelProps {
   meshId: string;
-  /** The class found for the mesh: its models are the default. */
+  /** The most probable class of the mesh, which may be unknown all the same: its models are the default. */
   foundClass: string | null;
   /** The estimation that is shown. */
   estimation: Estimation | undefined;
@@ -40,7 +40,7 @@ export function EstimationPanel({ meshId, foundClass, estimation, estimations }:
   const samplesValid = Number.isInteger(sampleCount) && sampleCount >= 1 && sampleCount <= MOST_SAMPLES;
   const modelOf = (id: string | null) => models.data?.find((model) => model.id === id);
 
-  const found = (className: string) => (className === foundClass ? " (class found)" : "");
+  const found = (className: string) => (className === foundClass ? " (most probable)" : "");
 
   const start = () => {
     if (target === null || !samplesValid) return;
@@ -159,7 +159,7 @@ export function EstimationPanel({ meshId, foundClass, estimation, estimations }:
 /** Begins the value of the choice "any model of this class"; ids of models hold no colon. */
 const CLASS = "class:";
 
-/** All models of the class found, else of the first class; the model itself if there is only one. */
+/** All models of the most probable class, else of the first class; the model itself if there is only one. */
 export function defaultTarget(classes: ModelClass[], foundClass: string | null): string | null {
   const chosen = classes.find(({ name }) => name === foundClass) ?? classes[0];
   if (chosen === undefined) return null;
