@@ -10,6 +10,7 @@ import json
 from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice
 from typing import Final
@@ -136,7 +137,7 @@ def store_chunk(
     features: list[Float16[np.ndarray, "N D"]] = []
     panoramas: list[Float32[np.ndarray, "N D"]] = []
     meshes = chunk.meshes(settings)
-    with ThreadPoolExecutor(_DESCRIBING_THREADS) as pool:
+    with _describing_pool() as pool:
         pending: deque[tuple[Future[np.ndarray] | None, Future[np.ndarray] | None]] = deque()
 
         def take() -> None:
@@ -166,6 +167,17 @@ def store_chunk(
         store.put(panorama_key, np.concatenate(panoramas))
     if needs_features:
         store.put(feature_key, np.concatenate(features).reshape(chunk.count, settings.images_per_variation, -1))
+
+
+@contextmanager
+def _describing_pool() -> Iterator[ThreadPoolExecutor]:
+    """Threads beside the one that draws; who breaks off waits for what they do, not for what waits for them."""
+    with ThreadPoolExecutor(_DESCRIBING_THREADS) as pool:
+        try:
+            yield pool
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
 
 
 def _pictures(
