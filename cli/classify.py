@@ -11,6 +11,9 @@ from cli.evaluation_options import Jobs, threads
 from cli.sources import find_meshes
 from shapewright.errors import MeshError, MeshFileError
 
+READERS = 4
+"""Files that are read at once at most; more than that one classifier cannot keep busy."""
+
 
 def classify(
     sources: Annotated[
@@ -43,10 +46,10 @@ def classify(
     files = find_meshes(sources)
     network = load_classifier(classifier)
     results: list[dict[str, Any]] = []
-    skipped: dict[str, MeshError] = {}
+    skipped: dict[str, MeshFileError] = {}
     started_s = time.monotonic()
     with threads(jobs) as used, shown_progress("classifying") as progress:
-        for number, (file, mesh) in enumerate(zip(files, load_meshes(files, jobs=used), strict=True)):
+        for number, (file, mesh) in enumerate(zip(files, load_meshes(files, jobs=min(used, READERS)), strict=True)):
             progress.report(number / len(files), file.name)
             mesh_started_s = time.monotonic()
             try:
@@ -54,7 +57,7 @@ def classify(
                     raise mesh
                 found = network.classify(mesh, views=views, rng=np.random.default_rng(seed))
             except MeshError as error:
-                skipped[str(file)] = error
+                skipped[str(file)] = MeshFileError(error.message, where=error.where)  # without what the frames hold
                 continue
             results.append(
                 {
@@ -77,7 +80,7 @@ def classify(
                 "views": views,
                 "results": results,
                 "skipped_count": len(skipped),
-                "skipped": [{"file": file, "reason": error.message} for file, error in skipped.items()],
+                "skipped": [{"file": file, "reason": _reason(file, error)} for file, error in skipped.items()],
                 "seconds": round(time.monotonic() - started_s, 3),
             }
         )
@@ -85,7 +88,7 @@ def classify(
     _print(results, skipped)
 
 
-def _print(results: list[dict[str, Any]], skipped: dict[str, MeshError]) -> None:
+def _print(results: list[dict[str, Any]], skipped: dict[str, MeshFileError]) -> None:
     from rich.table import Table
 
     table = Table("file", "answer", "known", "class", "probability", "next")
@@ -97,7 +100,12 @@ def _print(results: list[dict[str, Any]], skipped: dict[str, MeshError]) -> None
         table.add_row(result["file"], result["answer"], known, first["class_name"], probability, following)
     stdout().print(table)
     for file, error in skipped.items():
-        typer.echo(f"skipped {file}: {error.message}", err=True)
+        typer.echo(f"skipped {file}: {_reason(file, error)}", err=True)
+
+
+def _reason(file: str, error: MeshFileError) -> str:
+    place = (error.where or "").removeprefix(ascii(file)).lstrip(": ")
+    return f"{place}: {error.message}" if place else error.message
 
 
 def _listed(values: dict[str, float], what: str) -> list[dict[str, Any]]:

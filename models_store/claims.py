@@ -24,8 +24,10 @@ from models_store.text import check_id, storable
 
 
 QUIET: Final = timedelta(seconds=3)
-"""So long nobody's job may have waited or ended before a worker takes a part of another job: who classifies one mesh
-after the other shall not find the worker busy in between."""
+"""No part of another job is given out while somebody's job waits, nor so soon after one has ended: who classifies one
+mesh after the other shall not find the worker busy in between."""
+IDLE_WORKERS_TAKE_IT: Final = timedelta(seconds=0.5)
+"""A job that has waited longer finds no idle worker; then those that work on parts give way."""
 
 
 @dataclass(frozen=True)
@@ -90,8 +92,15 @@ def claim(session: Session, job_id: str, *, now: datetime, lease: timedelta, wor
 
 
 def others_wait(session: Session, *, now: datetime) -> bool:
-    """Whether somebody's own job waits, or has just ended: who works on a part of another job gives way."""
+    """Whether somebody's own job waits, or has just ended: no part of another job is given out then."""
     return bool(session.scalar(select(_others_wait(now))))
+
+
+def must_give_way(session: Session, *, now: datetime) -> bool:
+    """Whether somebody's own job waits in vain for a worker that has nothing else to do."""
+    other = aliased(JobRow)
+    waits = (other.state == JobState.QUEUED, other.created_at < now - IDLE_WORKERS_TAKE_IT)
+    return bool(session.scalar(select(exists().where(other.parent_id.is_(None), *waits))))
 
 
 def _is_wanted(now: datetime) -> ColumnElement[bool]:
@@ -102,7 +111,7 @@ def _is_wanted(now: datetime) -> ColumnElement[bool]:
 
 def _others_wait(now: datetime) -> ColumnElement[bool]:
     other = aliased(JobRow)
-    waits = or_(other.state == JobState.QUEUED, other.finished_at > now - QUIET)
+    waits = or_(other.state == JobState.QUEUED, other.finished_at.between(now - QUIET, now + QUIET))
     return exists().where(other.parent_id.is_(None), waits)
 
 

@@ -12,7 +12,7 @@ from typing import Any, Final
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
-from models_store.claims import Claim
+from models_store.claims import Claim, look
 from models_store.job_kinds import JobKind, JobState
 from models_store.jobs import create_job
 from models_store.tables import JobRow
@@ -31,12 +31,14 @@ def add_parts(
         kind: of all parts.
         payloads: ids of what each part needs.
         now: the time, with a zone.
+
+    Raises:
+        StaleClaim: the job is no longer ours.
     """
+    look(session, held)
     _delete(session, JobRow.parent_id == held.job_id)
     return [
-        create_job(
-            session, kind, held.result_id, payload, now=now, max_attempts=MAX_ATTEMPTS, parent_id=held.job_id
-        ).id
+        create_job(session, kind, held.result_id, payload, now=now, max_attempts=MAX_ATTEMPTS, parent_id=held.job_id).id
         for payload in payloads
     ]
 

@@ -12,7 +12,7 @@ from sqlalchemy import Text, and_, case, func, literal, or_, select, update
 from sqlalchemy.orm import Session, aliased
 
 from models_store.claims import JobError, back_to_queue, error_values
-from models_store.errors import JobFinishedError
+from models_store.errors import JobFinishedError, NotFoundError
 from models_store.job_events import add_state_event, update_job
 from models_store.job_kinds import FINAL_STATES, JobKind, JobState
 from models_store.jobs import request_cancel
@@ -82,7 +82,7 @@ def _end_parts(session: Session, now: datetime) -> None:
     query = select(JobRow.id).join(parent, parent.id == JobRow.parent_id)
     query = query.where(parent.state.in_(FINAL_STATES), JobRow.state.not_in(FINAL_STATES), ~JobRow.cancel_requested)
     for job_id in session.scalars(query.order_by(JobRow.id).limit(BATCH)).all():
-        with suppress(JobFinishedError):  # in between
+        with suppress(JobFinishedError, NotFoundError):  # ended, or withdrawn, in between
             request_cancel(session, job_id, now=now)
 
 

@@ -84,11 +84,14 @@ class JobRow(Base):
         Index(None, "created_at", "id"),
         Index(None, "state", "lease_expires_at"),
         Index(None, "state", "next_wakeup_at"),
-        Index(None, "finished_at"),
+        # most jobs have no parent, and each question asks for those: no index on the parent alone
+        Index(None, "parent_id", "created_at", "id"),
+        Index(None, "parent_id", "state"),
+        Index(None, "parent_id", "finished_at"),
     )
 
     id: Mapped[str] = mapped_column(String(32), primary_key=True)
-    parent_id: Mapped[str | None] = mapped_column(String(32), index=True)
+    parent_id: Mapped[str | None] = mapped_column(String(32))
     kind: Mapped[JobKind]
     state: Mapped[JobState]
     payload: Mapped[dict[str, Any]]

@@ -8,6 +8,7 @@ from sse_starlette.event import ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 
 from models_store import jobs
+from models_store.errors import NotFoundError
 from models_store.session import Database
 from models_store.tables import JobEventRow
 
@@ -30,7 +31,10 @@ def read_events(database: Database, job_id: str, after: int) -> tuple[list[JobEv
 async def job_events(database: Database, job_id: str, after: int, *, poll_s: float) -> AsyncIterator[ServerSentEvent]:
     """Yield the events after a number as they come, until the job has ended."""
     while True:
-        events, ended = await run_in_threadpool(read_events, database, job_id, after)
+        try:
+            events, ended = await run_in_threadpool(read_events, database, job_id, after)
+        except NotFoundError:  # a part of another job, withdrawn by the worker of that job
+            return
         for event in events:
             after = event.sequence
             yield ServerSentEvent(data=json.dumps(event.data), event=event.type, id=str(event.sequence))

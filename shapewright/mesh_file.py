@@ -73,8 +73,8 @@ def load_meshes(paths: Sequence[str | Path], *, jobs: int = 1) -> Iterator[Trian
     def load(path: str | Path) -> TriangleMesh | MeshFileError:
         try:
             return load_mesh(path, reader=reader)
-        except MeshFileError as error:
-            return error
+        except MeshFileError as error:  # without its traceback, which holds the content of the file
+            return MeshFileError(error.message, where=error.where)
 
     with MeshReader(kept=jobs) as reader, ThreadPoolExecutor(jobs) as pool:
         coming: deque[Future[TriangleMesh | MeshFileError]] = deque()

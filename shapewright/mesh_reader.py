@@ -54,20 +54,37 @@ class MeshReader:
         Raises:
             MeshFileError: as :func:`shapewright.mesh_decode.decode_mesh`, or the child ran out of memory or time.
         """
-        with self._lock:
-            process = self._idle.pop() if self._idle else _Process()
+        request = {"file_type": file_type, "limits": vars(limits)}
+        process = self._waiting()
         try:
-            status, output = process.ask({"file_type": file_type, "limits": vars(limits)}, data, limits.wall_s)
+            try:
+                status, output = process.ask(request, data, limits.wall_s)
+            except ReaderLostError:  # whatever befell it while it waited is not this file's fault
+                process.end()
+                process = _Process()
+                status, output = process.ask(request, data, limits.wall_s)
         except BaseException:
             process.end()
             raise
+        self._put_back(process, trusted=status == 0)
+        return _mesh_of(status, output, limits)
+
+    def _waiting(self) -> "_Process":
         with self._lock:
-            keep = len(self._idle) < self._kept
+            return self._idle.pop() if self._idle else _Process()
+
+    def _put_back(self, process: "_Process", *, trusted: bool) -> None:
+        """Keep a process for the next file, unless its last child broke: who tries to break one gets a fresh one."""
+        with self._lock:
+            keep = trusted and len(self._idle) < self._kept
             if keep:
                 self._idle.append(process)
         if not keep:
             process.end()
-        return _mesh_of(status, output, limits)
+
+
+class ReaderLostError(MeshFileError):
+    """The process that reads files is gone."""
 
 
 class _Process:
@@ -96,7 +113,8 @@ class _Process:
         """The status of the child that read this file, and what it wrote.
 
         Raises:
-            MeshFileError: it took too long, or the process is gone; it is of no more use.
+            ReaderLostError: the process is gone.
+            MeshFileError: it took too long; the process is of no more use.
         """
         late = threading.Event()
 
@@ -118,11 +136,12 @@ class _Process:
             if len(output) < header["size"]:
                 raise EOFError
         except (OSError, ValueError, EOFError):
-            reason = f"reading took more than {timeout_s:g} s" if late.is_set() else "the reader is gone"
-            raise MeshFileError(reason, where=_WHERE) from None
+            if not late.is_set():
+                raise ReaderLostError("the reader is gone", where=_WHERE) from None
         finally:
             timer.cancel()
-        if late.is_set():  # just in time, but nobody is there for the next file
+            timer.join()
+        if late.is_set():  # perhaps just in time, but nobody is there for the next file
             raise MeshFileError(f"reading took more than {timeout_s:g} s", where=_WHERE)
         return header["status"], output
 
@@ -135,7 +154,7 @@ class _Process:
         self._popen.wait()
 
     def _kill(self) -> None:
-        if self._popen.poll() is None:
+        if self._popen.returncode is None:  # unless it was waited for, its number and its group are still its own
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self._popen.pid, signal.SIGKILL)
 
@@ -153,11 +172,13 @@ def _mesh_of(status: int, output: bytes, limits: ReadLimits) -> TriangleMesh:
         answer = json.loads(header)
         if "error" in answer:
             raise MeshFileError(str(answer["error"]), where=answer["where"])
+        if answer["vertices"] > limits.vertices or answer["faces"] > limits.faces:
+            raise ValueError("more than it may answer")
         split = int(answer["vertices"]) * 24
         vertices = np.frombuffer(body[:split], dtype=np.float64).reshape(-1, 3)
         faces = np.frombuffer(body[split:], dtype=np.int64).reshape(-1, 3)
         return TriangleMesh(vertices.copy(), faces.copy())
     except MeshFileError:
         raise
-    except (ValueError, KeyError, TypeError, MeshError):
+    except (ValueError, KeyError, TypeError, OverflowError, RecursionError, MeshError):
         raise MeshFileError("the reader gave no sensible answer", where=_WHERE) from None

@@ -1,24 +1,31 @@
 """The process behind :class:`shapewright.mesh_reader.MeshReader`: ``python -m shapewright.mesh_reader_process``.
 
 It has imported what reading takes, looks at no content itself, and forks a child for each file. The child limits
-itself, and can open no file and no connection, as no further descriptor is allowed. In: one line of JSON, then the
+itself, can open no file and no connection, as no further descriptor is allowed, finds nothing of other files in its
+memory, and cannot look into this process. In: one line of JSON, then the
 file. Out: one line of JSON with the child's status, then what the child wrote: one line of JSON, then the arrays.
 """
 
+import ctypes
 import importlib
 import json
 import os
 import resource
+import signal
 import sys
 import traceback
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, Final
 
 from shapewright import mesh_decode
 from shapewright.errors import MeshFileError
 
+_LONGEST_HEADER: Final = 1 << 16
+_PR_SET_DUMPABLE: Final = 4
+
 
 def main() -> None:
     """Answer requests from stdin on stdout, until there are no more."""
+    _keep_others_out()
     source, sink = sys.stdin.buffer, sys.stdout.buffer
     while line := source.readline():
         request = json.loads(line)
@@ -26,8 +33,10 @@ def main() -> None:
         if request["file_type"] in ("ply", "glb", "gltf"):
             _load_trimesh()
         status, output = _in_child(request["file_type"], request["limits"], data)
-        sink.write(json.dumps({"status": status, "size": len(output)}).encode() + b"\n" + output)
+        sink.write(json.dumps({"status": status, "size": len(output)}).encode() + b"\n")
+        sink.write(output)
         sink.flush()
+        del line, request, data, output
 
 
 def _in_child(file_type: str, limits: dict[str, Any], data: bytes) -> tuple[int, bytes]:
@@ -46,14 +55,18 @@ def _in_child(file_type: str, limits: dict[str, Any], data: bytes) -> tuple[int,
         os._exit(0)
     os.close(writing)
     with os.fdopen(reading, "rb") as source:
-        output = source.read()
+        most = _LONGEST_HEADER + 24 * (limits["vertices"] + limits["faces"])
+        output = source.read(most + 1)
+        if len(output) > most:  # no mesh within the limits
+            os.kill(child, signal.SIGKILL)
+            output = b""
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), output
 
 
 def _answer(file_type: str, limits: dict[str, Any], data: bytes, sink: BinaryIO) -> None:
     _limit(resource.RLIMIT_AS, limits["memory_bytes"])
     _limit(resource.RLIMIT_CPU, limits["cpu_s"], spare=1)  # a second between the signal and the kill
-    for kind in (resource.RLIMIT_CORE, resource.RLIMIT_FSIZE, resource.RLIMIT_NOFILE):
+    for kind in (resource.RLIMIT_CORE, resource.RLIMIT_FSIZE, resource.RLIMIT_NOFILE, resource.RLIMIT_NPROC):
         _limit(kind, 0)
     try:
         answer, body = _parse(file_type, limits, data)
@@ -72,6 +85,12 @@ def _parse(file_type: str, limits: dict[str, Any], data: bytes) -> tuple[dict[st
         return {"error": error.message, "where": error.where}, []
     counts: dict[str, object] = {"vertices": len(mesh.vertices), "faces": len(mesh.faces)}
     return counts, [mesh.vertices.tobytes(), mesh.faces.tobytes()]
+
+
+def _keep_others_out() -> None:
+    """Let no process of the same user read this one's memory or change it (Linux)."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_PR_SET_DUMPABLE, 0)
 
 
 def _load_trimesh() -> None:

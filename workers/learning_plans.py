@@ -5,6 +5,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 from models_store import catalog
+from shapewright.progress import Progress
 from workers.context import JobContext, with_tuples
 
 if TYPE_CHECKING:
@@ -30,10 +31,17 @@ class LearningPlan:
 
 _kept: Final[dict[str, LearningPlan]] = {}
 """The plan of the last job by the classifier's id: a worker that helps takes one part of it after the other."""
+_compiled: "Final[dict[str, CompiledModel]]" = {}
+"""Models of the last plan by their ids, also of one that was broken off."""
 
 
-def learning_plan(context: JobContext, classifier_id: str) -> LearningPlan:
+def learning_plan(context: JobContext, classifier_id: str, progress: Progress) -> LearningPlan:
     """The plan of a classifier, whose row never changes what is asked for.
+
+    Args:
+        context: of the job.
+        classifier_id: of the row.
+        progress: hears of every model.
 
     Raises:
         ShapewrightError: a model or a setting of the row is not fit for it.
@@ -44,11 +52,18 @@ def learning_plan(context: JobContext, classifier_id: str) -> LearningPlan:
 
         with context.database.reading() as session:
             row = catalog.get_classifier(session, classifier_id)
+        wanted = [*row.model_ids, *(row.negative_model_ids or ())]
+        for model_id in set(_compiled) - set(wanted):
+            del _compiled[model_id]
+        for model_id in wanted:
+            progress.report(0.0, "compiling models")
+            if model_id not in _compiled:
+                _compiled[model_id] = context.load_model(model_id).compile()
         classes: dict[str, list[CompiledModel]] = {}
         for model_id in row.model_ids:
-            model = context.load_model(model_id)
-            classes.setdefault(model.class_name, []).append(model.compile())
-        negatives = [context.load_model(model_id).compile() for model_id in row.negative_model_ids or ()]
+            compiled = _compiled[model_id]
+            classes.setdefault(compiled.model.class_name, []).append(compiled)
+        negatives = [_compiled[model_id] for model_id in row.negative_model_ids or ()]
         settings = TrainingSettings(**with_tuples(row.settings))
         _kept.clear()
         _kept[classifier_id] = LearningPlan(plan_learning(classes, negatives, settings), settings)

@@ -32,7 +32,12 @@ def list_jobs(
     services: ServicesDep,
     state: Annotated[JobState | None, Query(description="Only jobs in this state.")] = None,
     kind: Annotated[JobKind | None, Query(description="Only jobs of this kind.")] = None,
-    parent_id: Annotated[IdQuery, Query(description="The parts of this job, which are not listed else.")] = None,
+    parent_id: Annotated[
+        IdQuery,
+        Query(
+            description="The parts of this job, which are not listed else. One goes away when the job's own worker does it."
+        ),
+    ] = None,
     limit: LimitQuery = 50,
     cursor: CursorQuery = None,
 ) -> Any:

@@ -16,7 +16,7 @@ from worker_support import QUICK, Site, brick, now, rod
 
 from models_store import catalog
 from models_store.artifacts import ArtifactStore
-from models_store.claims import QUIET
+from models_store.claims import IDLE_WORKERS_TAKE_IT, QUIET
 from models_store.errors import ArtifactError
 from models_store.jobs import JobState, request_cancel
 from models_store.parts import part_states
@@ -316,6 +316,10 @@ def test_a_part_gives_way_and_one_that_fails_is_done_by_the_training(site: Site)
     training = queue_training(site, [brick(), rod()])
     tried: list[str] = []
 
+    def want_something() -> None:
+        site.queue_thumbnail(site.add_model(slab()))
+        time.sleep(IDLE_WORKERS_TAKE_IT.total_seconds() + 0.1)  # there is none
+
     def help_badly(key: str) -> None:
         parts = parts_of(site, training.job_id)
         if tried:
@@ -324,7 +328,7 @@ def test_a_part_gives_way_and_one_that_fails_is_done_by_the_training(site: Site)
         run(site, first, Full(site.artifacts, "features/"))
         tried.append(first)
 
-        run(site, second, Interrupting(site.artifacts, lambda: site.queue_thumbnail(site.add_model(slab()))))
+        run(site, second, Interrupting(site.artifacts, want_something))
         assert parts_of(site, training.job_id)[second] is JobState.QUEUED
 
     succeed(site, training.job_id, Watched(site.artifacts, help_badly))

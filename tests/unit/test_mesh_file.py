@@ -2,6 +2,7 @@ import base64
 import contextlib
 import json
 import os
+import re
 import signal
 import struct
 import subprocess
@@ -262,11 +263,39 @@ def test_one_reader_reads_many_files_and_outlives_bad_ones():
             for file_type in ("obj", "glb"):
                 assert len(parse_mesh(WRITTEN[file_type], file_type, reader=reader).faces) == len(BALL.faces)
         (process,) = reader._idle
-        os.kill(process._popen.pid, signal.SIGKILL)  # whatever befalls it
-        process._popen.wait()
-        with pytest.raises(MeshFileError, match="the reader is gone"):
-            parse_mesh(WRITTEN["off"], "off", reader=reader)
+        os.kill(process._popen.pid, signal.SIGKILL)  # whatever befalls it: the next file is not to blame
         np.testing.assert_array_equal(parse_mesh(WRITTEN["off"], "off", reader=reader).faces, BALL.faces)
+        assert len(reader._idle) == 1
+
+
+def test_a_hijacked_child_finds_no_other_file_and_answers_no_more_than_it_may():
+    program = """
+import sys
+from shapewright import mesh_decode, mesh_reader_process
+
+class Huge:
+    def __len__(self): return 1
+    def tobytes(self): return bytes(10**6)
+
+def decode(data, *_):
+    if data == b"endless":
+        return type("Mesh", (), {"vertices": Huge(), "faces": Huge()})
+    found, frame = set(), sys._getframe()
+    while frame is not None:
+        found |= {one for one in frame.f_locals.values() if isinstance(one, bytes) and b"triangle" in one}
+        frame = frame.f_back
+    raise mesh_decode.MeshFileError(str(found))
+
+mesh_decode.decode_mesh = decode
+mesh_reader_process.main()
+"""
+    limits = vars(replace(DEFAULT_LIMITS, vertices=1000, faces=1000))
+    requests = b""
+    for data in (b"triangle 1", b"triangle 2", b"endless"):
+        requests += json.dumps({"file_type": "obj", "limits": limits, "size": len(data)}).encode() + b"\n" + data
+    child = subprocess.run([sys.executable, "-c", program], input=requests, capture_output=True, check=False)
+    assert re.findall(rb"{b'triangle.*?}", child.stdout) == [b"{b'triangle 1'}", b"{b'triangle 2'}"]
+    assert child.stdout.endswith(b'{"status": -9, "size": 0}\n')
 
 
 def test_threads_share_a_reader():

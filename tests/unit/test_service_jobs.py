@@ -11,8 +11,9 @@ import pytest
 from httpx_sse import ServerSentEvent, connect_sse
 from service_support import LiveService, problem, running, service, shared_service, tetrahedron
 
-from models_store import claims
+from models_store import claims, parts
 from models_store.claims import Claim
+from models_store.job_kinds import JobKind
 
 __all__ = ["service", "shared_service"]
 
@@ -169,6 +170,28 @@ def test_a_stream_goes_along_with_the_job_and_ends_with_it(service: LiveService)
         assert not watcher.is_alive()
         assert words(watcher.events) == words(follow(service, job_id))
         assert len(watcher.events) == 13
+
+
+def test_parts_are_listed_with_their_job_and_a_stream_ends_with_a_withdrawn_one(service: LiveService) -> None:
+    job_id = queue_estimation(service)
+    held = service.claim(job_id)
+    with service.services.database.writing() as session:
+        payloads = [{"chunk": number} for number in range(2)]
+        ids = parts.add_parts(session, held, JobKind.DESCRIBE_VARIATIONS, payloads, now=datetime.now(UTC))
+    listed = service.client.get(f"/v1/jobs?parent_id={job_id}").json()["items"]
+    assert {part["id"] for part in listed} == set(ids)
+    assert {part["parent_id"] for part in listed} == {job_id}
+    assert set(ids).isdisjoint(job["id"] for job in service.client.get("/v1/jobs").json()["items"])
+    assert service.client.get("/v1/jobs?parent_id=nobody").json()["items"] == []
+    problem(service.client.get("/v1/jobs?parent_id=%00"), 422, "query.parent_id")
+    watcher = Watcher(service, f"/v1/jobs/{ids[0]}/events")
+    watcher.wait_for(1)
+    with service.services.database.writing() as session:
+        assert parts.withdraw_part(session, ids[0])
+    watcher.join(20)
+    assert not watcher.is_alive()
+    assert words(watcher.events) == [("state", "queued")]
+    problem(service.client.get(f"/v1/jobs/{ids[0]}"), 404)
 
 
 def test_a_silent_stream_shows_that_it_is_alive(tmp_path) -> None:

@@ -7,7 +7,8 @@ from store_support import LEASE, FakeClock, clock, database, queue_job  # noqa: 
 
 from models_store import claims, parts
 from models_store.claims import QUIET, Claim
-from models_store.jobs import JobKind, JobState, get_job, list_jobs
+from models_store.errors import StaleClaim
+from models_store.jobs import JobKind, JobState, get_job, list_events, list_jobs
 from models_store.session import Database
 from models_store.sweep import sweep
 
@@ -81,11 +82,35 @@ def test_a_part_gives_way_to_what_somebody_asked_for(bench: Bench) -> None:
     with bench.database.reading() as session:
         assert claims.others_wait(session, now=bench.clock.now)
     assert bench.claim(bench.parts[1]) is None
-    bench.clock.forward(QUIET.total_seconds())
+    bench.clock.forward(QUIET.total_seconds() + 1)
     assert bench.claim(bench.parts[1]) is not None
     with bench.database.writing() as session:
         claims.release(session, part, now=bench.clock.now)
     assert bench.states() == [JobState.QUEUED, JobState.RUNNING, JobState.QUEUED]
+
+
+def test_who_works_on_a_part_gives_way_when_no_idle_worker_takes_a_job(bench: Bench) -> None:
+    def must_give_way() -> bool:
+        with bench.database.reading() as session:
+            return claims.must_give_way(session, now=bench.clock.now)
+
+    wanted = queue_job(bench.database, bench.clock.now)
+    assert not must_give_way()
+    bench.clock.forward(1)
+    assert must_give_way()
+    held = bench.start(wanted)
+    assert not must_give_way()
+    bench.end(held)
+    assert not must_give_way()
+
+
+def test_a_stale_claim_adds_no_parts(bench: Bench) -> None:
+    with bench.database.writing() as session:
+        claims.release(session, bench.held, now=bench.clock.now)
+    stale, bench.held = bench.held, bench.start(bench.held.job_id)
+    with pytest.raises(StaleClaim), bench.database.writing() as session:
+        parts.add_parts(session, stale, KIND, [{}], now=bench.clock.now)
+    assert bench.states() == [JobState.QUEUED] * 3
 
 
 def test_no_part_is_given_out_when_its_job_does_not_run(bench: Bench) -> None:
@@ -110,8 +135,6 @@ def test_parts_end_with_their_job(bench: Bench) -> None:
 
 
 def _events(bench: Bench, job_id: str) -> list:
-    from models_store.jobs import list_events
-
     with bench.database.reading() as session:
         return list(list_events(session, job_id))
 

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from models_store import claims
+from models_store.session import OUTAGES
 from shapewright.errors import ClassifierError
 from workers.array_store import ArtifactArrays
 from workers.context import JobContext, Outcome, utc_now
@@ -26,21 +27,30 @@ class _Helping:
             GivingWay: somebody's own job waits.
         """
         self._context.progress.report(fraction, message)
-        with self._context.database.reading() as session:
-            if claims.others_wait(session, now=utc_now()):
-                raise GivingWay
+        try:
+            with self._context.database.reading() as session:
+                gives_way = claims.must_give_way(session, now=utc_now())
+        except OUTAGES:  # the heartbeat tells of it
+            return
+        if gives_way:
+            raise GivingWay
 
 
 def describe_variations(context: JobContext) -> Outcome:
     """Leave the features, and the descriptors if wanted, where the training looks for them."""
-    from shapewright.classification.chunks import is_stored, store_chunk
+    from shapewright.classification.chunks import descriptors_key, features_key, store_chunk
 
-    work = learning_plan(context, str(context.claim.payload["classifier_id"]))
+    helping = _Helping(context)
+    work = learning_plan(context, str(context.claim.payload["classifier_id"]), helping)
     chunk, described = work.plan.chunks[int(context.claim.payload["chunk"])]
     store = ArtifactArrays.of(context)
-    store_chunk(chunk, work.settings, work.extractor, store, described=described, progress=_Helping(context))
-    if not is_stored(chunk, work.settings, work.extractor.backbone, ArtifactArrays.of(context), described):
-        raise ClassifierError("what was computed could not be stored", where=f"chunk {chunk.number}")
+    store_chunk(chunk, work.settings, work.extractor, store, described=described, progress=helping)
+    keys = [features_key(chunk, work.settings, work.extractor.backbone)]
+    if described:
+        keys.append(descriptors_key(chunk, work.settings))
+    for key in keys:
+        if not context.artifacts.exists(key):
+            raise ClassifierError("what was computed could not be stored", where=key)
     return Outcome(_nothing)
 
 

@@ -23,8 +23,7 @@ def train_classifier(context: JobContext) -> Outcome:
     from shapewright.classification.training import IMAGES_SHARE, learn
 
     classifier_id = str(context.claim.payload["classifier_id"])
-    context.progress.report(0.0, "compiling models")
-    work = learning_plan(context, classifier_id)
+    work = learning_plan(context, classifier_id, context.progress)
     store = ArtifactArrays.of(context)
     _draw_and_describe(context, work, store, PartialProgress(context.progress, 0.0, IMAGES_SHARE))
     trained = learn(work.plan, work.settings, store, PartialProgress(context.progress, IMAGES_SHARE, 1.0))

@@ -13,15 +13,17 @@ down_revision = "20261125_evidence"
 branch_labels = None
 depends_on = None
 
+INDEXES = (["parent_id", "created_at", "id"], ["parent_id", "state"], ["parent_id", "finished_at"])
+
 
 def upgrade() -> None:
     op.add_column("jobs", sa.Column("parent_id", sa.String(length=32), nullable=True))
-    op.create_index(op.f("ix_jobs_parent_id"), "jobs", ["parent_id"], unique=False)
-    op.create_index(op.f("ix_jobs_finished_at"), "jobs", ["finished_at"], unique=False)
+    for columns in INDEXES:
+        op.create_index(op.f(f"ix_jobs_{'_'.join(columns)}"), "jobs", columns, unique=False)
 
 
 def downgrade() -> None:
     op.execute("DELETE FROM jobs WHERE parent_id IS NOT NULL")  # an older service does not know their kind
-    op.drop_index(op.f("ix_jobs_finished_at"), table_name="jobs")
-    op.drop_index(op.f("ix_jobs_parent_id"), table_name="jobs")
+    for columns in INDEXES:
+        op.drop_index(op.f(f"ix_jobs_{'_'.join(columns)}"), table_name="jobs")
     op.drop_column("jobs", "parent_id")
