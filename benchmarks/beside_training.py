@@ -1,4 +1,4 @@
-"""What a training costs who classifies beside it: ``.venv/bin/python benchmarks/beside_training.py``, one JSON document.
+"""What a training costs who classifies beside it: ``.venv/bin/python benchmarks/beside_training.py``, in JSON.
 
 A service with two workers on the embedded default. One mesh is classified again and again: alone, beside a training,
 and beside processes that do nothing but count, as many as the training keeps cores busy. The last is what the shared
@@ -64,28 +64,28 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=25)
     options = parser.parse_args()
     os.environ["SHAPEWRIGHT_WORKER_CONCURRENCY"] = "2"
-    with tempfile.TemporaryDirectory() as folder:
-        with (
-            local_service(Path(folder) / "data", port=0, log=Path(folder) / "log") as service,
-            connected(service["url"], ready_within_s=60.0) as client,
-        ):
-            models = [client.post_document("/v1/models", path.read_text())[0] for path in list_shipped().values()]
-            wanted = {"model_ids": [model["id"] for model in models]}
-            small = {"variations": 20, "images_per_variation": 2, "negatives": 10}
-            first = client.post("/v1/classifiers", wanted | {"settings": small})
-            client.follow(first["job"])
-            mesh = client.upload("/v1/meshes", SAMPLE)
-            body = {"mesh_id": mesh["id"], "classifier_id": first["id"]}
-            classify(client, body, 6)  # both workers are warm then
-            alone = classify(client, body, options.repeats)
-            with busy_cores(os.cpu_count() or 2):
-                beside_busy_cores = classify(client, body, options.repeats)
-            training = client.post("/v1/classifiers", wanted | {"settings": {"seed": 1}})["job"]
-            sleep(15.0)  # compiling is over, drawing has begun, and the free worker has taken a part
-            beside_training = classify(client, body, options.repeats)
-            state = client.get(training["url"])
-            parts = client.get(f"/v1/jobs?parent_id={training['id']}&limit=200")["items"]
-            client.post(f"/v1/jobs/{training['id']}/cancel", {})
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        local_service(Path(folder) / "data", port=0, log=Path(folder) / "log") as service,
+        connected(service["url"], ready_within_s=60.0) as client,
+    ):
+        models = [client.post_document("/v1/models", path.read_text())[0] for path in list_shipped().values()]
+        wanted = {"model_ids": [model["id"] for model in models]}
+        small = {"variations": 20, "images_per_variation": 2, "negatives": 10}
+        first = client.post("/v1/classifiers", wanted | {"settings": small})
+        client.follow(first["job"])
+        mesh = client.upload("/v1/meshes", SAMPLE)
+        body = {"mesh_id": mesh["id"], "classifier_id": first["id"]}
+        classify(client, body, 6)  # both workers are warm then
+        alone = classify(client, body, options.repeats)
+        with busy_cores(os.cpu_count() or 2):
+            beside_busy_cores = classify(client, body, options.repeats)
+        training = client.post("/v1/classifiers", wanted | {"settings": {"seed": 1}})["job"]
+        sleep(15.0)  # compiling is over, drawing has begun, and the free worker has taken a part
+        beside_training = classify(client, body, options.repeats)
+        state = client.get(training["url"])
+        parts = client.get(f"/v1/jobs?parent_id={training['id']}&limit=200")["items"]
+        client.post(f"/v1/jobs/{training['id']}/cancel", {})
     document = {
         "cores": os.cpu_count(),
         "alone": alone,

@@ -22,7 +22,6 @@ from models_store.job_kinds import JobKind, JobState
 from models_store.tables import JobRow
 from models_store.text import check_id, storable
 
-
 QUIET: Final = timedelta(seconds=3)
 """No part of another job is given out while somebody's job waits, nor so soon after one has ended: who classifies one
 mesh after the other shall not find the worker busy in between."""

@@ -110,8 +110,8 @@ class Runner:
             outcome = TASKS[held.kind](context)
         except (StaleClaim, *OUTAGES):
             raise
-        except (WorkerStopping, GivingWay) as reason:
-            log.info("job goes back to the queue", reason=type(reason).__name__)
+        except (WorkerStopping, GivingWay) as stop:
+            log.info("job goes back to the queue", reason=type(stop).__name__)
             return lambda session: claims.release(session, held, now=self._clock()), None
         except Cancelled:
             log.info("job cancelled")

@@ -34,9 +34,7 @@ def list_jobs(
     kind: Annotated[JobKind | None, Query(description="Only jobs of this kind.")] = None,
     parent_id: Annotated[
         IdQuery,
-        Query(
-            description="The parts of this job, which are not listed else. One goes away when the job's own worker does it."
-        ),
+        Query(description="The parts of this job; one vanishes when the job's own worker does it."),
     ] = None,
     limit: LimitQuery = 50,
     cursor: CursorQuery = None,

@@ -108,7 +108,8 @@ def test_what_others_take_is_left_to_them_and_awaited(job: Job, invited: list[st
     parts = shared(job, 4)
     others: list[claims.Claim] = []
     taken = []
-    for number, _ in parts.mine(CallbackProgress(lambda fraction, message: job.end(others.pop()))):
+    helpers_end = CallbackProgress(lambda fraction, message: job.end(others.pop()))
+    for number, _ in parts.mine(helpers_end):
         taken.append(number)
         if number == 0:
             others += [job.take(job.parts()[n][0]) for n in (1, 3)]

@@ -3552,7 +3552,7 @@ export interface operations {
                 state?: components["schemas"]["JobState"] | null;
                 /** @description Only jobs of this kind. */
                 kind?: components["schemas"]["JobKind"] | null;
-                /** @description The parts of this job, which are not listed else. One goes away when the job's own worker does it. */
+                /** @description The parts of this job; one vanishes when the job's own worker does it. */
                 parent_id?: string | null;
                 /** @description Most items of a page. */
                 limit?: number;
