@@ -51,7 +51,7 @@ def withdraw_part(session: Session, part_id: str) -> bool:
 def part_states(session: Session, job_id: str) -> dict[str, JobState]:
     """The state of every part of a job, by its id."""
     rows = session.execute(select(JobRow.id, JobRow.state).where(JobRow.parent_id == job_id))
-    return dict(rows.tuples().all())
+    return {row.id: row.state for row in rows}
 
 
 def _delete(session: Session, condition: Any) -> bool:
