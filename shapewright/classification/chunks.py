@@ -7,6 +7,9 @@ classes, on their order, or on who computes it, and a longer series begins with 
 
 import hashlib
 import json
+import os
+import sys
+import threading
 from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -33,6 +36,8 @@ BLOCK: Final = 8
 PICTURES_VERSION: Final = 1
 """Raise it when the renderer draws something else for the same settings."""
 _DESCRIBING_THREADS: Final = 2
+_NICENESS: Final = 10
+"""Of the describing threads alone."""
 
 
 @dataclass(frozen=True)
@@ -169,10 +174,16 @@ def store_chunk(
         store.put(feature_key, np.concatenate(features).reshape(chunk.count, settings.images_per_variation, -1))
 
 
+def _step_back() -> None:
+    """Let what people wait for go first: three busy threads are more than a training's share of two cores (Linux)."""
+    if sys.platform == "linux":
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICENESS)
+
+
 @contextmanager
 def _describing_pool() -> Iterator[ThreadPoolExecutor]:
     """Threads beside the one that draws; who breaks off waits for what they do, not for what waits for them."""
-    with ThreadPoolExecutor(_DESCRIBING_THREADS) as pool:
+    with ThreadPoolExecutor(_DESCRIBING_THREADS, initializer=_step_back) as pool:
         try:
             yield pool
         except BaseException:
