@@ -6,7 +6,7 @@ import type { Job, JobState } from "../src/api/types";
 
 function job(state: JobState, fraction = 0): Job {
   return {
-    id: "j1", kind: "estimate", state, attempt: 1, max_attempts: 3, cancel_requested: false,
+    id: "j1", parent_id: null, kind: "estimate", state, attempt: 1, max_attempts: 3, cancel_requested: false,
     progress: { fraction, message: "working" }, error: null, result_url: null, url: "/v1/jobs/j1",
     events_url: "/v1/jobs/j1/events", created_at: "2025-03-01T10:00:00Z", started_at: null, finished_at: null,
   }; // prettier-ignore
