@@ -89,15 +89,16 @@ def classify(
 
 
 def _print(results: list[dict[str, Any]], skipped: dict[str, MeshFileError]) -> None:
-    from rich.table import Table
+    from rich.markup import escape
+    from rich.table import Column, Table
 
-    table = Table("file", "answer", "known", "class", "probability", "next")
+    table = Table(Column("file", overflow="fold"), "answer", "known", "class", "probability", "next")
     for result in results:
         first, *others = result["probabilities"]
         following = f"{others[0]['class_name']} {others[0]['probability']:.1%}" if others else ""
         known = "" if result["known"] is None else f"{result['known']:.1%}"
         probability = f"{first['probability']:.1%}"
-        table.add_row(result["file"], result["answer"], known, first["class_name"], probability, following)
+        table.add_row(escape(result["file"]), result["answer"], known, first["class_name"], probability, following)
     stdout().print(table)
     for file, error in skipped.items():
         typer.echo(f"skipped {file}: {_reason(file, error)}", err=True)

@@ -281,7 +281,7 @@ def _settings(options: Options) -> "TrainingSettings":
     from shapewright.classification import TrainingSettings
 
     given = {} if options.settings_file is None else read_object(options.settings_file)
-    return TrainingSettings.from_dict({"seed": options.seed} | given)
+    return TrainingSettings.from_dict(given | {"seed": options.seed})
 
 
 def _baseline(name: str, settings: "TrainingSettings") -> "TrainingSettings":

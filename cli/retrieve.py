@@ -49,7 +49,9 @@ def retrieve(
         str | None,
         typer.Option("--model", "-m", help="Find meshes like this shipped model, or JSON file.", show_default=False),
     ] = None,
-    mesh: Annotated[Path | None, typer.Option("--mesh", help="Find meshes like this one.", show_default=False)] = None,
+    mesh: Annotated[
+        Path | None, typer.Option("--mesh", dir_okay=False, help="Find meshes like this one.", show_default=False)
+    ] = None,
     evidence: Annotated[
         EvidenceName, typer.Option(help="The classifier's word, panorama distances, or both.")
     ] = EvidenceName.combined,

@@ -58,10 +58,7 @@ def train(
     options = {"variations": variations, "images_per_variation": images, "epochs": epochs, "seed": seed}
     chosen = read_object(settings_file) if settings_file is not None else {}
     chosen |= {name: value for name, value in options.items() if value is not None}
-    try:
-        settings = TrainingSettings(**chosen)
-    except TypeError as error:
-        raise ClassifierError(f"a setting that there is not, or of a wrong type: {error}") from None
+    settings = TrainingSettings.from_dict(chosen)
     started_s = time.monotonic()
     names = {name: [compiled.model.name for compiled in members] for name, members in by_class.items()}
     with shown_progress("training") as progress:

@@ -162,6 +162,8 @@ def _try_fold(data: FeatureSet, settings: TrainingSettings, folds: Int[np.ndarra
     usable = data.learned & ~left_out
     learned = _views_of(data, _sample(usable & ~data.held_out, data.sources, _LEARNED_A_SHARE, rng))
     apart = _views_of(data, _sample(usable & data.held_out, data.sources, _LEARNED_A_SHARE, rng))
+    if not len(learned) or not len(apart):  # few variations: the split was drawn by class, not by model
+        learned = apart = np.concatenate([learned, apart])
     head = train_head(data, replace(settings, epochs=min(settings.epochs, _EPOCHS)), learned=learned, apart=apart)
     once = (data.held_out if fold == 0 else np.zeros_like(left_out)) & (folds[data.sources] < 0)
     trials = ~data.learned & (np.arange(len(data.labels)) % FOLDS == fold)

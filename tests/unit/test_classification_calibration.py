@@ -91,6 +91,14 @@ def test_without_objects_of_no_class_there_is_no_curve() -> None:
     assert "left_out_auroc_pictures" not in found.metrics
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_few_variations_leave_every_fold_something_to_learn(seed: int) -> None:
+    """Which are held out is drawn by class: with few of each model a fold may have all of them on one side."""
+    settings = TrainingSettings(variations=4, images_per_variation=1, negatives=0, exemplars=False, seed=seed)
+    places = {"a1": 0, "a2": 0, "b1": 1, "b2": 1}
+    assert calibrated(lambda name: direction(places[name]), settings).temperature > 0
+
+
 def test_a_training_reports_what_becomes_of_left_out_models() -> None:
     classes = {name: [*models, *also(models[0])] for name, models in toy_classes().items()}
     settings = TrainingSettings(variations=12, images_per_variation=2, image_size=64, negatives=8, held_out=0.25)

@@ -135,6 +135,7 @@ def test_a_table_and_a_sheet_for_people(tmp_path: Path) -> None:
         (("--model", "nothing"), "neither a file nor a shipped model"),
         (("--model", "table"), "does not know the class 'table'"),
         (("--mesh", "missing.off"), "no such file"),
+        (("--mesh", "meshes"), "is a directory"),
         (("--mesh", "meshes/below/broken.off"), "--mesh"),
         (("nowhere", "--class", "rod"), "no such file or folder"),
         (("empty", "--class", "rod"), "no mesh below this folder"),
