@@ -19,8 +19,9 @@ import numpy as np
 from cli.evaluation_options import cache_folder
 from cli.sources import load_classes, load_negatives
 from shapewright.classification import Classifier, FolderStore, TrainingSettings, train_classifier
+from shapewright.classification.evidence import OTHER
 from shapewright.evaluation.classification_figures import Evidence, figures_by, retrieval_figures
-from shapewright.evaluation.classified import OTHER, Found, Judged, JudgedDataset, Said
+from shapewright.evaluation.classified import Found, Judged, JudgedDataset, Said
 from shapewright.evaluation.datasets import LabelledFile, Skipped, load_each, read_dataset, spread
 from shapewright.mesh import TriangleMesh
 

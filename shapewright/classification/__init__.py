@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from shapewright.classification.backbone import BACKBONES, Backbone, load_backbone
     from shapewright.classification.class_instances import gather_instances
     from shapewright.classification.classifier import (
-        UNKNOWN,
         Classification,
         Classifier,
         exemplars_file,
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
         load_classifier,
     )
     from shapewright.classification.collection_index import CollectionIndex
+    from shapewright.classification.evidence import UNKNOWN
     from shapewright.classification.exemplars import Exemplars
     from shapewright.classification.features import FeatureExtractor
     from shapewright.classification.indexing import Indexed, SkippedMesh, index_meshes, look_at
@@ -46,7 +46,7 @@ _HOMES = {
     "SkippedMesh": "indexing",
     "TrainedClassifier": "training",
     "TrainingSettings": "settings",
-    "UNKNOWN": "classifier",
+    "UNKNOWN": "evidence",
     "exemplars_file": "classifier",
     "files_digest": "classifier",
     "gather_instances": "class_instances",

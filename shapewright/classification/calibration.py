@@ -3,11 +3,11 @@
 Held-out variations of a model that was learned are far easier than real objects are. So the models are split into
 folds: a last layer learns without a fold's models and is tried on their variations, and on objects of no class that
 it did not learn from either. What it says there sets the temperature and the curve that tells known from unknown, and
-is the honest forecast among the figures of a training. Labels of real meshes have no part in it.
+is the honest forecast among the figures of a training. Where there is nothing to leave out (classes of one model each)
+held-out variations have to do for both, and there is no forecast. Labels of real meshes have no part in it.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -29,7 +29,7 @@ _LEARNED_A_SHARE: Final = 60
 _TRIED_A_KIND: Final = 40
 """Variations of each class, and objects of each source without a class, that are tried."""
 _VIEWS: Final = 4
-_EPOCHS: Final = 12
+_BINS: Final = 15
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,8 @@ class Calibration:
         pictures: curve of ``known`` for pictures alone; ``None`` if no objects of no class were learned from.
         geometry: the same with distances to exemplars; ``None`` without exemplars.
         metrics: figures as JSON values: accuracy on variations of left-out models by pictures and by all
-            evidence, and the area under the curve of known against unknown.
+            evidence, how far their probabilities by all evidence are from the truth, and the area under the curve of
+            known against unknown; what was not tried is missing.
     """
 
     temperature: float
@@ -88,35 +89,64 @@ def calibrate(
         tried.append(_try_fold(data, settings, folds, fold))
     progress.report(0.8, "comparing with exemplars")
     meshes = np.concatenate([one.meshes for one in tried])
-    values = np.concatenate([one.values for one in tried])
+    values = np.concatenate([one.values for one in tried]).reshape(len(meshes), data.views, -1)
+    kept, left_out = _honest(data, folds, meshes)
+    meshes, values = meshes[kept], values[kept]
     labels = data.labels[meshes]
     known = labels < data.class_count
-    row_labels = np.repeat(labels, data.views)
-    row_known = row_labels < data.class_count
-    closed = values[:, : data.class_count]
-    temperature = fit_temperature(closed[row_known], row_labels[row_known])
-    by_mesh = (len(meshes), data.views, -1)
-    probabilities = softmax(closed / temperature).reshape(by_mesh).mean(axis=1)
-    opened = softmax(values / temperature)[:, : data.class_count].reshape(by_mesh).mean(axis=1)
-    metrics: dict[str, Any] = {
-        "left_out_meshes": int(known.sum()),
-        "left_out_accuracy_pictures": _accuracy(probabilities[known], labels[known]),
-    }
-    has_none = values.shape[1] > data.class_count
-    scores = class_scores(opened).max(axis=1)
-    pictures = fit_known_curve(scores, known) if has_none else None
-    if has_none:
-        metrics["left_out_auroc_pictures"] = auroc(scores[known], scores[~known])
+    forecast = left_out & known
+    closed = values[..., : data.class_count]
+    flat = closed[known].reshape(-1, data.class_count)
+    temperature = fit_temperature(flat, np.repeat(labels[known], data.views))
+    probabilities = softmax(closed / temperature).mean(axis=1)
+    opened = softmax(values / temperature)[..., : data.class_count].mean(axis=1)
+    metrics: dict[str, Any] = {"left_out_meshes": int(forecast.sum())}
+    has_none = values.shape[2] > data.class_count
+
+    def judged(name: str, by_class: Float[np.ndarray, "M C"], scores: Float[np.ndarray, "M C"]) -> KnownCurve | None:
+        best = scores.max(axis=1)
+        if forecast.any():
+            right = by_class[forecast].argmax(axis=1) == labels[forecast]
+            metrics[f"left_out_accuracy{name}"] = float(right.mean())
+            metrics[f"left_out_calibration_error{name}"] = calibration_error(by_class[forecast].max(axis=1), right)
+            if has_none:
+                metrics[f"left_out_auroc{name}"] = auroc(best[forecast], best[~known])
+        return fit_known_curve(best, known) if has_none else None
+
+    pictures = judged("_pictures", probabilities, class_scores(opened))
     geometry = None
     if exemplars is not None and descriptors is not None:
         near = _distances_without_own_model(data, descriptors, exemplars, meshes)
-        every = [class_probabilities(p, d) for p, d in zip(probabilities, near, strict=True)]
-        metrics["left_out_accuracy"] = _accuracy(np.stack(every)[known], labels[known])
-        scores = class_scores(opened, near).max(axis=1)
-        if has_none:
-            geometry = fit_known_curve(scores, known)
-            metrics["left_out_auroc"] = auroc(scores[known], scores[~known])
+        by_all = np.stack([class_probabilities(p, d) for p, d in zip(probabilities, near, strict=True)])
+        geometry = judged("", by_all, class_scores(opened, near))
     return Calibration(temperature, pictures, geometry, metrics)
+
+
+def _honest(
+    data: FeatureSet, folds: Int[np.ndarray, " S"], tried: Int[np.ndarray, " T"]
+) -> tuple[Int[np.ndarray, " M"], Bool[np.ndarray, " M"]]:
+    """Which of the meshes that were tried count, and whether each is of a source that its fold had not learned from.
+
+    Only such meshes count, unless there are none of classes, or none of no class.
+    """
+    left_out = (folds[data.sources[tried]] >= 0) | ~data.learned[tried]
+    known = data.labels[tried] < data.class_count
+    counts = left_out.copy()
+    for kind in (known, ~known):
+        if not (left_out & kind).any():
+            counts |= kind
+    kept = np.flatnonzero(counts)
+    return kept, left_out[kept]
+
+
+def calibration_error(confidence: Float[np.ndarray, " N"], right: Bool[np.ndarray, " N"], bins: int = _BINS) -> float:
+    """Expected calibration error: mean gap between confidence and accuracy over equal bins (Guo et al. 2017)."""
+    slot = np.minimum((confidence * bins).astype(np.int64), bins - 1)
+    gaps = [
+        abs(float(confidence[slot == i].mean()) - float(right[slot == i].mean())) * float((slot == i).mean())
+        for i in np.unique(slot)
+    ]
+    return float(sum(gaps))
 
 
 def fit_temperature(values: Float[np.ndarray, "N C"], labels: Int[np.ndarray, " N"]) -> float:
@@ -164,7 +194,7 @@ def _try_fold(data: FeatureSet, settings: TrainingSettings, folds: Int[np.ndarra
     apart = _views_of(data, _sample(usable & data.held_out, data.sources, _LEARNED_A_SHARE, rng))
     if not len(learned) or not len(apart):  # few variations: the split was drawn by class, not by model
         learned = apart = np.concatenate([learned, apart])
-    head = train_head(data, replace(settings, epochs=min(settings.epochs, _EPOCHS)), learned=learned, apart=apart)
+    head = train_head(data, settings, learned=learned, apart=apart)
     once = (data.held_out if fold == 0 else np.zeros_like(left_out)) & (folds[data.sources] < 0)
     trials = ~data.learned & (np.arange(len(data.labels)) % FOLDS == fold)
     kinds = np.where(data.labels < data.class_count, data.labels, data.class_count + data.sources)
@@ -198,7 +228,3 @@ def _distances_without_own_model(
             distances[mesh] = np.inf  # the exemplars are the first rows of all meshes: this is itself
         near[row], _ = exemplars.nearest(distances, without_model=own)
     return near
-
-
-def _accuracy(probabilities: Sequence[Any] | np.ndarray, labels: Int[np.ndarray, " M"]) -> float:
-    return float((np.asarray(probabilities).argmax(axis=1) == labels).mean()) if len(labels) else 0.0

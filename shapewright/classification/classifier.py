@@ -12,6 +12,7 @@ from jaxtyping import Float, UInt8
 
 from shapewright.classification.evidence import (
     KNOWN_THRESHOLD,
+    UNKNOWN,
     KnownCurve,
     class_probabilities,
     class_scores,
@@ -35,8 +36,6 @@ from shapewright.rendering.styles import FRAMINGS, STYLES
 from shapewright.rendering.views import spread_views
 
 DEFAULT_VIEWS: Final = 10
-UNKNOWN: Final = "unknown"
-"""The answer for a mesh of none of the classes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +186,7 @@ class Classifier:
                     fit = fit_class(descriptor, self.exemplars, every, int(number), models, rng)
                     if fit is not None:
                         fits[self.class_names[number]] = fit
-                        distances[number] = fit.distance
+                        distances[number] = min(fit.distance, distances[number])
         scores = class_scores(opened, distances)
         probabilities = self._ranked(class_probabilities(pictured, distances))
         curve = self._curve("pictures" if distances is None else "geometry")

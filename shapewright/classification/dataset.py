@@ -1,7 +1,9 @@
 """What a classifier learns from: which sources give how many meshes, and the stored features of all of them."""
 
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -10,6 +12,7 @@ from jaxtyping import Bool, Float, Int
 from shapewright.classification.array_store import ArrayStore
 from shapewright.classification.backbone import Backbone
 from shapewright.classification.chunks import Chunk, chunks_of, descriptors_key, features_key
+from shapewright.classification.evidence import OTHER, UNKNOWN
 from shapewright.classification.settings import TrainingSettings
 from shapewright.classification.sources import (
     AssemblySource,
@@ -21,8 +24,10 @@ from shapewright.classification.sources import (
 )
 from shapewright.errors import ClassifierError
 
-TRIALS_SHARE: Final = 0.2
-"""Distorted and mixed objects, as a share of the objects of each other kind without a class."""
+OTHERS: Final = 8
+"""Fewer models of no class share the objects as so many would: a model that comes or goes changes no other's."""
+TRIALS_SHARE: Final = 0.01
+"""Distorted objects of each class, and mixed ones of each two classes, as a share of the objects of no class."""
 
 
 @dataclass(frozen=True)
@@ -79,16 +84,25 @@ def plan_learning(
         negatives: compiled models of things that are none of the classes.
         settings: how many.
 
+    What a class needs does not depend on the others, but for the objects that are mixed with its neighbour in the
+    order of names: a class that comes or changes is all that has to be drawn.
+
     Raises:
-        ClassifierError: fewer than two classes, a class without models or with more models than variations.
+        ClassifierError: fewer than two classes, a class without models, with more models than variations, or with a
+            reserved name; a model that comes twice.
     """
     if len(classes) < 2:
         raise ClassifierError("a classifier tells at least two classes apart", where="classes")
     for name, generators in classes.items():
+        if name in (UNKNOWN, OTHER):
+            raise ClassifierError("this word stands for what is of no class", where=f"classes.{name}")
         if not generators:
             raise ClassifierError("the class has no models", where=f"classes.{name}")
         if len(generators) > settings.variations:
             raise ClassifierError("the class has more models than variations", where=f"classes.{name}")
+    twice = [digest for digest, count in Counter(_digests([*classes.values(), negatives])).items() if count > 1]
+    if twice:
+        raise ClassifierError("a model comes twice", where=f"model {twice[0]}")
     described = settings.exemplars and settings.vary
     shares = [
         Share(ModelSource(generator, settings.vary), number, count, described)
@@ -98,19 +112,22 @@ def plan_learning(
     none, amount = len(classes), settings.negatives
     if amount:
         others = list(negatives)[:amount]
-        shares += [
-            Share(ModelSource(generator), none, count, described)
-            for generator, count in zip(others, evenly(amount, len(others)), strict=True)
-        ]
+        count = max(1, amount // max(len(others), OTHERS))
+        shares += [Share(ModelSource(generator), none, count, described) for generator in others]
         shares.append(Share(AssemblySource(), none, amount, described))
-        every = [generator for generators in classes.values() for generator in generators]
-        known = tuple(sorted(every, key=lambda generator: generator.model.digest))  # in whatever order they came
         trials = max(1, round(amount * TRIALS_SHARE))
-        shares += [
-            Share(source, none, trials, described, learned=False)
-            for source in (DistortedSource(known), MixedSource(known))
-        ]
+        shares += [Share(source, none, trials, described, learned=False) for source in _trial_sources(classes)]
     return Plan(tuple(classes), tuple(shares))
+
+
+def _trial_sources(classes: Mapping[str, Sequence[InstanceGenerator]]) -> list[Source]:
+    """Objects that are nearly of a class, in an order that does not depend on how the classes came."""
+    known = [tuple(sorted(classes[name], key=lambda one: one.model.digest)) for name in sorted(classes)]
+    return [*map(DistortedSource, known), *(MixedSource(first, second) for first, second in pairwise(known))]
+
+
+def _digests(groups: Iterable[Sequence[InstanceGenerator]]) -> list[str]:
+    return [generator.model.digest for generators in groups for generator in generators]
 
 
 def evenly(total: int, parts: int) -> list[int]:

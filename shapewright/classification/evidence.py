@@ -2,8 +2,8 @@
 
 A class's *score* is ``log(q + floor) - weight * d``: q is the mean over the views of its probability where ``none`` has
 a share, d the panorama distance of its nearest exemplar. It is high only if the pictures look like the class, like no
-other, and the geometry is near. The class is the one with the highest score, and that score tells, through a
-logistic curve that procedural models alone have set, whether the mesh is *known*.
+other, and the geometry is near. The class is the most probable one, given that it is one of them; the highest score
+tells, through a logistic curve that procedural models alone have set, whether the mesh is *known*.
 """
 
 from dataclasses import dataclass
@@ -20,6 +20,12 @@ FLOOR: Final = 1e-3
 """No single source of evidence rules a class out."""
 KNOWN_THRESHOLD: Final = 0.5
 """A mesh whose ``known`` is below is answered with ``unknown``."""
+
+
+UNKNOWN: Final = "unknown"
+"""The answer for a mesh of none of the classes."""
+OTHER: Final = "other"
+"""What meshes of none of the classes are called where their true class is known."""
 
 
 @dataclass(frozen=True)

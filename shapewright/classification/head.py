@@ -124,10 +124,10 @@ def train_head(
     )
 
 
-def softmax(values: Float[np.ndarray, "N C"]) -> Float[np.ndarray, "N C"]:
-    """Probabilities of each row."""
-    shifted = np.exp(values - values.max(axis=1, keepdims=True))
-    return np.asarray(shifted / shifted.sum(axis=1, keepdims=True))
+def softmax(values: Float[np.ndarray, "*N C"]) -> Float[np.ndarray, "*N C"]:
+    """Probabilities along the last axis."""
+    shifted = np.exp(values - values.max(axis=-1, keepdims=True))
+    return np.asarray(shifted / shifted.sum(axis=-1, keepdims=True))
 
 
 _Batches = Callable[[Int[np.ndarray, " B"]], tuple[torch.Tensor, torch.Tensor]]

@@ -15,7 +15,7 @@ from shapewright.mesh import TriangleMesh
 
 VERSION: Final = 1
 """Raise it with every change of the shapes: what was stored of the old ones is then left alone."""
-MIXED_VERSION: Final = 2
+MIXED_VERSION: Final = 3
 """Of the mixed objects alone."""
 
 _MAX_PARTS: Final = 9

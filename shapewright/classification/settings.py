@@ -21,8 +21,9 @@ class TrainingSettings:
         images_per_variation: pictures of each variation, each with its own rotation and scale.
         image_size: pixels a side; 0 takes the size that the backbone was trained for.
         scale_range: scales are drawn uniformly from it.
-        negatives: objects that are of no class, of each kind: variations of other models together, and random
-            assemblies. 0 learns to tell classes apart, but not what is ``unknown``.
+        negatives: objects that are of no class: so many random assemblies, and as many variations of other models
+            together if there are eight of them or more, fewer if not. 0 learns to tell classes apart, but not what
+            is ``unknown``.
         exemplars: whether the variations' panorama descriptors are kept, as evidence beside the pictures.
         vary: whether variations vary; without, all pictures show base models (the paper's baseline, section 4.2).
         held_out: share of each class's *variations* (not pictures) kept for early stopping and calibration.

@@ -133,23 +133,24 @@ class DistortedSource:
 
 @dataclass(frozen=True)
 class MixedSource:
-    """Halves of variations of two models each."""
+    """A half of a variation of a model of each of two classes."""
 
-    generators: Sequence[InstanceGenerator]
+    first: Sequence[InstanceGenerator]
+    second: Sequence[InstanceGenerator]
     name: str = "mixed"
 
     @property
     def digest(self) -> str:
         """Changes with the models and the version of the mixing."""
-        return _digest_of(f"{self.name} {negatives.MIXED_VERSION}", self.generators)
+        return _digest_of(f"{self.name} {negatives.MIXED_VERSION}", [*self.first, *self.second])
 
     def meshes(self, rng: np.random.Generator, count: int, steps: int) -> Iterator[TriangleMesh]:
-        """Two halves each, of two random models."""
+        """Two halves each, of a random model of either class."""
 
-        def any_instance() -> TriangleMesh:
-            return _any_instance(self.generators, rng, steps)
+        def halves() -> tuple[TriangleMesh, TriangleMesh]:
+            return _any_instance(self.first, rng, steps), _any_instance(self.second, rng, steps)
 
-        return (negatives.mixed(any_instance(), any_instance(), rng) for _ in range(count))
+        return (negatives.mixed(*halves(), rng) for _ in range(count))
 
 
 def _digest_of(name: str, generators: Sequence[InstanceGenerator]) -> str:

@@ -5,11 +5,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from jaxtyping import Bool, Float
 
 from shapewright.classification.array_store import ArrayStore, MemoryStore
 from shapewright.classification.backbone import load_backbone
-from shapewright.classification.calibration import calibrate
+from shapewright.classification.calibration import calibrate, calibration_error
 from shapewright.classification.chunks import is_stored, store_chunk
 from shapewright.classification.dataset import FeatureSet, Plan, load_descriptors, load_features, plan_learning
 from shapewright.classification.exemplars import Exemplars, exemplars_of
@@ -168,13 +167,3 @@ def held_out_metrics(data: FeatureSet, head: Head, class_names: Sequence[str]) -
         "best_epoch": head.best_epoch,
         "curves": head.curves,
     }
-
-
-def calibration_error(confidence: Float[np.ndarray, " N"], right: Bool[np.ndarray, " N"], bins: int = 15) -> float:
-    """Expected calibration error: mean gap between confidence and accuracy over equal bins (Guo et al. 2017)."""
-    slot = np.minimum((confidence * bins).astype(np.int64), bins - 1)
-    gaps = [
-        abs(float(confidence[slot == i].mean()) - float(right[slot == i].mean())) * float((slot == i).mean())
-        for i in np.unique(slot)
-    ]
-    return float(sum(gaps))

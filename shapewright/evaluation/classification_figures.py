@@ -8,7 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from shapewright.classification.calibration import auroc
-from shapewright.evaluation.classified import OTHER, Judged, JudgedDataset, Said
+from shapewright.classification.evidence import OTHER
+from shapewright.evaluation.classified import Judged, JudgedDataset, Said
 from shapewright.evaluation.retrieval_metrics import RetrievalFigures, figures_of, mean_figures, relevance
 
 

@@ -3,21 +3,18 @@
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 from jaxtyping import Float
 
 from shapewright.classification.classifier import DEFAULT_VIEWS, Classification, Classifier
+from shapewright.classification.evidence import OTHER
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor, panorama_distances
 from shapewright.errors import EvaluationError, MeshError
 from shapewright.evaluation.datasets import LabelledFile, Skipped, load_each
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling import CompiledModel
 from shapewright.progress import NULL_PROGRESS, Progress
-
-OTHER: Final = "other"
-"""What the classes are called that the classifier does not know."""
 
 
 @dataclass(frozen=True, eq=False)

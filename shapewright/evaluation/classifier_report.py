@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from shapewright.evaluation.classified import OTHER, Judged, JudgedDataset
+from shapewright.classification.evidence import OTHER
+from shapewright.evaluation.classified import Judged, JudgedDataset
 from shapewright.evaluation.datasets import Skipped, load_each
 from shapewright.evaluation.report import PICTURE_SIZE, Picture, png_uri, templates
 from shapewright.progress import NULL_PROGRESS, Progress

@@ -35,7 +35,7 @@ SMALL = TrainingSettings(
     variations=6, images_per_variation=2, image_size=64, negatives=2, exemplars=False, held_out=0.25, epochs=5, seed=3
 )
 BOXES = [models[0] for models in toy_classes().values()]
-SOURCES = [ModelSource(BOXES[0]), AssemblySource(), DistortedSource(BOXES), MixedSource(BOXES)]
+SOURCES = [ModelSource(BOXES[0]), AssemblySource(), DistortedSource(BOXES), MixedSource(BOXES[:1], BOXES[1:])]
 
 
 class CountingExtractor(FeatureExtractor):
@@ -60,7 +60,9 @@ def seen(monkeypatch) -> list[int]:
 def test_a_shorter_chunk_is_the_beginning_of_a_longer_one(source: Source) -> None:
     long, short = Chunk(source, 1, 5), Chunk(source, 1, 2)
     pictures = chunk_images(long, SMALL)
-    assert np.array_equal(chunk_images(short, SMALL), pictures[: 2 * SMALL.images_per_variation])
+    drawn = chunk_images(short, SMALL)
+    differing = (drawn != pictures[: len(drawn)]).mean()
+    assert differing < 1e-3, "but for the rounding at edges of pictures that lie elsewhere in the atlas"
     for one, other in zip(short.meshes(SMALL), long.meshes(SMALL), strict=False):
         assert np.array_equal(one.vertices, other.vertices)
         assert np.array_equal(one.faces, other.faces)
@@ -105,7 +107,7 @@ def test_a_name_says_all_that_the_features_depend_on() -> None:
 def test_what_is_stored_is_not_computed_again(seen) -> None:
     store = MemoryStore()
     first = train_classifier(toy_classes(), SMALL, store=store)
-    pictures = (3 * 6 + 2 + 1 + 1) * 2
+    pictures = (3 * 6 + 2 + 3 + 2) * 2
     assert sum(seen) == pictures
     again = train_classifier(toy_classes(), replace(SMALL, epochs=3), store=store)
     assert sum(seen) == pictures
@@ -126,7 +128,7 @@ def test_a_training_goes_on_where_it_was_cancelled(seen, tmp_path) -> None:
     done = sum(seen)
     assert done == 2 * 6 * 2, "bench and cross"
     resumed = train_classifier(toy_classes(), SMALL, store=store)
-    assert sum(seen) == (3 * 6 + 2 + 1 + 1) * 2, "nothing twice"
+    assert sum(seen) == (3 * 6 + 2 + 3 + 2) * 2, "nothing twice"
     assert resumed.onnx == train_classifier(toy_classes(), SMALL).onnx
 
 

@@ -78,7 +78,7 @@ def test_the_curve_separates_and_is_one_half_between(middle, gap, seed, counts) 
     is_known = np.arange(sum(counts)) < counts[0]
     curve = fit_known_curve(np.concatenate([known, unknown]), is_known)
     assert curve.slope > 0
-    assert curve.probability(middle) == pytest.approx(0.5, abs=0.1), "whatever their numbers"
+    assert curve.probability(middle) == pytest.approx(0.5, abs=0.2), "whatever their numbers"
     assert min(curve.probability(float(score)) for score in known) > 0.5
     assert max(curve.probability(float(score)) for score in unknown) < 0.5
 

@@ -2,13 +2,14 @@
 
 import json
 from importlib import resources
+from pathlib import Path
 
 import numpy as np
 import onnx
 import pytest
 import simple_shapes
 
-from shapewright.classification import FeatureExtractor, load_backbone
+from shapewright.classification import FeatureExtractor, features, load_backbone
 from shapewright.classification.backbone import RANGES_FILE, efficientnet_lite0_layers
 from shapewright.classification.quantized_graph import quantized_features_graph, range_names
 from shapewright.rendering import random_views, render_images
@@ -44,6 +45,32 @@ def test_both_graphs_agree_on_drawn_pictures() -> None:
     assert np.corrcoef((exact - middle).ravel(), (whole - middle).ravel())[0, 1] > 0.95, (
         "what tells pictures apart, too"
     )
+
+
+def test_processors_without_vnni_count_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Forced onto the slow way, which this machine may not need."""
+    pictures = np.random.default_rng(0).integers(0, 256, (2, 224, 224, 3), dtype=np.uint8)
+    expected = FeatureExtractor(load_backbone("efficientnet_lite0_int8"))(pictures)
+    monkeypatch.setattr(features, "_integers_are_precise", lambda: False)
+    np.testing.assert_array_equal(FeatureExtractor(load_backbone("efficientnet_lite0_int8"))(pictures), expected)
+
+
+@pytest.mark.parametrize(
+    ("machine", "facts", "precise"),
+    [
+        ("aarch64", None, True),
+        ("x86_64", "flags: avx2", False),
+        ("AMD64", None, False),
+        ("x86_64", "avx512_vnni", True),
+    ],
+)
+def test_it_is_known_which_processors_need_the_slow_way(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, machine: str, facts: str | None, precise: bool
+) -> None:
+    monkeypatch.setattr("platform.machine", lambda: machine)
+    if facts is not None:
+        (tmp_path / "cpuinfo").write_text(facts)
+    assert features._integers_are_precise.__wrapped__(tmp_path / "cpuinfo") is precise
 
 
 def test_pictures_are_not_converted() -> None:

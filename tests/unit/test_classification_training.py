@@ -8,11 +8,12 @@ import pytest
 from simple_shapes import BoxModel, toy_classes
 
 from shapewright.classification import FeatureExtractor, MemoryStore, TrainingSettings, load_backbone, train_classifier
+from shapewright.classification.calibration import calibration_error
 from shapewright.classification.chunks import BLOCK, chunk_images, features_key
 from shapewright.classification.dataset import load_features, plan_learning
 from shapewright.classification.head import train_head
 from shapewright.classification.sources import ModelSource
-from shapewright.classification.training import calibration_error, draw_and_describe, held_out_metrics
+from shapewright.classification.training import draw_and_describe, held_out_metrics
 from shapewright.errors import Cancelled, ClassifierError
 from shapewright.progress import CallbackProgress
 
@@ -33,7 +34,7 @@ def test_toy_classes_are_learned(trained):
     assert result.class_names == ("bench", "cross", "block")
     assert result.metrics["held_out_accuracy"] == 1.0
     assert result.metrics["held_out_image_accuracy"] >= 0.9
-    assert result.metrics["images"] == (3 * 12 + 6 + 1 + 1) * 3, "classes, assemblies, distorted and mixed"
+    assert result.metrics["images"] == (3 * 12 + 6 + 3 + 2) * 3, "classes, assemblies, distorted and mixed"
     assert result.metrics["held_out_variations"] == 3 * 3
     assert np.trace(result.metrics["confusion"]) == 9
     curves = result.metrics["curves"]
@@ -103,15 +104,46 @@ def test_objects_of_no_class_are_other_models_assemblies_and_what_is_only_tried(
     plan = plan_learning(classes, others, TrainingSettings(variations=8, negatives=5))
     rest = [share for share in plan.shares if share.label == len(plan.class_names)]
     assert [(share.source.name, share.count, share.learned) for share in rest] == [
-        ("block", 3, True),
-        ("further", 2, True),
+        ("block", 1, True),
+        ("further", 1, True),
         ("assemblies", 5, True),
+        ("distorted", 1, False),
         ("distorted", 1, False),
         ("mixed", 1, False),
     ]
     assert len({share.source.digest for share in plan.shares}) == len(plan.shares)
     without = plan_learning(classes, others, TrainingSettings(variations=8, negatives=0))
     assert all(share.label < 2 for share in without.shares)
+
+
+def test_a_class_that_comes_changes_what_no_other_needs():
+    """Only what is mixed with its neighbours is new; a further object that becomes a class leaves the others alone."""
+    classes = toy_classes()
+    name = max(classes)
+    models = classes.pop(name)
+    settings = TrainingSettings(variations=8, negatives=800)
+    others = [BoxModel(f"other{n}", [((0, 0, 0), (1, 1, 1 + n))]) for n in range(3)]
+
+    def chunks(plan):
+        return {(chunk.source.digest, chunk.number, chunk.count): chunk.source.name for chunk, _ in plan.chunks}
+
+    before = chunks(plan_learning(classes, [*models, *others], settings))
+    after = chunks(plan_learning(classes | {name: models}, others, settings))
+    new = [after[key] for key in after.keys() - before.keys()]
+    assert sorted(new) == sorted(["distorted", "mixed", models[0].model.name])
+
+
+@pytest.mark.parametrize("name", ["unknown", "other"])
+def test_words_for_what_is_of_no_class_name_no_class(name: str):
+    with pytest.raises(ClassifierError, match="of no class"):
+        plan_learning(toy_classes() | {name: [BoxModel("x", [((0, 0, 0), (1, 1, 1))])]}, (), TrainingSettings())
+
+
+def test_a_model_comes_once():
+    classes = toy_classes()
+    first = next(iter(classes.values()))
+    with pytest.raises(ClassifierError, match="comes twice"):
+        plan_learning(classes | {"again": first}, (), TrainingSettings())
 
 
 def test_held_out_variations_are_kept_apart_whole_and_by_class():
@@ -125,7 +157,7 @@ def test_held_out_variations_are_kept_apart_whole_and_by_class():
         return load_features(plan, settings, backbone, store)
 
     data = features_of(toy_classes())
-    assert len(data.labels) == len(data.held_out) == 3 * 20 + 10 + 2 + 2
+    assert len(data.labels) == len(data.held_out) == 3 * 20 + 10 + 3 + 2
     assert np.bincount(data.labels[data.held_out]).tolist() == [4, 4, 4, 2]
     assert not data.held_out[~data.learned].any(), "what is only tried is never learned from anyway"
     rows = data.rows(data.held_out)

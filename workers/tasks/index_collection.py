@@ -85,7 +85,8 @@ def _extended(
     """Index the other meshes; now and then, and when this worker stops, what is done is kept."""
     from shapewright.classification.indexing import index_chunks
 
-    new = [mesh_id for mesh_id in mesh_ids if mesh_id not in index.rows_of(mesh_ids)]
+    here = index.rows_of(mesh_ids)
+    new = [mesh_id for mesh_id in mesh_ids if mesh_id not in here]
     skipped: list[SkippedMesh] = []
     kept, kept_s = len(index), time.monotonic()
 
