@@ -20,7 +20,7 @@ from cli.evaluation_options import cache_folder
 from cli.sources import load_classes, load_negatives
 from shapewright.classification import Classifier, FolderStore, TrainingSettings, train_classifier
 from shapewright.classification.evidence import OTHER
-from shapewright.evaluation.classification_figures import Evidence, figures_by, retrieval_figures
+from shapewright.evaluation.classification_figures import Evidence, figures_by, rankings_of, retrieval_figures
 from shapewright.evaluation.classified import Found, Judged, JudgedDataset, Said
 from shapewright.evaluation.datasets import LabelledFile, Skipped, load_each, read_dataset, spread
 from shapewright.mesh import TriangleMesh
@@ -62,14 +62,15 @@ def judged(classifier: Classifier, meshes: Meshes, views: int) -> JudgedDataset:
                 (found.picture_probabilities, found.picture_scores),
             )
         ]
+        distances = None if found.distances is None else np.array([found.distances[name] for name in names])
         label = item.class_name if item.class_name in names else OTHER
-        rows.append(Judged(item, label, Found.of(found), *said, None, np.zeros(len(names)), {}, 0.0))
+        rows.append(Judged(item, label, Found.of(found), *said, None, distances, None, {}, 0.0))
     return JudgedDataset(names, tuple(rows), ())
 
 
 def figures(dataset: JudgedDataset) -> dict[str, float]:
     """Accuracy, AUROC and mean average precision by pictures and by all evidence."""
-    out = {}
+    out, rankings = {}, rankings_of(dataset)
     for name, said in (
         ("pictures", [one.by_pictures for one in dataset.judged]),
         ("all", [one.by_all for one in dataset.judged]),
@@ -78,7 +79,7 @@ def figures(dataset: JudgedDataset) -> dict[str, float]:
         by = figures_by(dataset, evidence)
         out[f"accuracy_{name}"] = by.accuracy
         out[f"auroc_{name}"] = by.auroc_known or float("nan")
-        out[f"map_{name}"] = retrieval_figures(dataset, evidence.scores)[0].average_precision
+        out[f"map_{name}"] = retrieval_figures(dataset, rankings[name])[0].average_precision
     return out
 
 

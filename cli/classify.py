@@ -1,15 +1,21 @@
 """`shapewright classify`: what are these meshes?"""
 
 import time
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from cli.console import AsJson, print_json, shown_progress, stdout
 from cli.evaluation_options import Jobs, threads
-from cli.sources import find_meshes
+from cli.picture import save_picture
+from cli.sources import find_meshes, load_class
+from models_store.library.shipped import list_classes
 from shapewright.errors import MeshError, MeshFileError
+
+if TYPE_CHECKING:
+    from shapewright.modeling import CompiledModel
 
 READERS = 4
 """Files that are read at once at most; more than that one classifier cannot keep busy."""
@@ -25,6 +31,14 @@ def classify(
     ],
     views: Annotated[int, typer.Option(min=1, max=1000, help="Pictures taken of each mesh.")] = 10,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random views.")] = 0,
+    fit: Annotated[
+        bool,
+        typer.Option("--fit", help="Also fit the shipped models of the likeliest classes; takes a second a mesh."),
+    ] = False,
+    pictures: Annotated[
+        Path | None,
+        typer.Option(help="Folder for a PNG of each mesh as the classifier saw it.", show_default=False),
+    ] = None,
     jobs: Jobs = None,
     as_json: AsJson = False,
 ) -> None:
@@ -37,14 +51,17 @@ def classify(
 
       [bold]shapewright classify query.off -c classifier.onnx[/]
       [bold]shapewright classify my-meshes more/*.obj -c classifier.onnx --json[/]
+      [bold]shapewright classify query.off -c classifier.onnx --fit --pictures seen[/]
     """
     import numpy as np
 
     from shapewright.classification import load_classifier
     from shapewright.mesh_file import load_meshes
+    from shapewright.rendering import compose_grid
 
     files = find_meshes(sources)
     network = load_classifier(classifier)
+    models = _shipped(network.class_names) if fit else None
     results: list[dict[str, Any]] = []
     skipped: dict[str, MeshFileError] = {}
     started_s = time.monotonic()
@@ -55,21 +72,20 @@ def classify(
             try:
                 if isinstance(mesh, MeshFileError):
                     raise mesh
-                found = network.classify(mesh, views=views, rng=np.random.default_rng(seed))
+                found = network.classify(mesh, views=views, rng=np.random.default_rng(seed), models=models)
             except MeshError as error:
                 skipped[str(file)] = MeshFileError(error.message, where=error.where)  # without what the frames hold
                 continue
+            seconds = round(time.monotonic() - mesh_started_s, 3)
+            picture = None
+            if pictures is not None:
+                picture = pictures / f"{number + 1:0{len(str(len(files)))}d}-{file.stem}.png"
+                pictures.mkdir(parents=True, exist_ok=True)
+                save_picture(compose_grid(found.images), picture)
             results.append(
-                {
-                    "file": str(file),
-                    "answer": found.answer,
-                    "class_name": found.class_name,
-                    "known": found.known,
-                    "probabilities": _listed(found.probabilities, "probability"),
-                    "picture_probabilities": _listed(found.picture_probabilities, "probability"),
-                    "distances": None if found.distances is None else _listed(found.distances, "distance"),
-                    "seconds": round(time.monotonic() - mesh_started_s, 3),
-                }
+                {"file": str(file)}
+                | found.to_dict()
+                | {"seconds": seconds, "picture": None if picture is None else str(picture)}
             )
     if not results:
         raise next(iter(skipped.values()))
@@ -78,6 +94,7 @@ def classify(
             {
                 "classifier": str(classifier),
                 "views": views,
+                "class_names": list(network.class_names),
                 "results": results,
                 "skipped_count": len(skipped),
                 "skipped": [{"file": file, "reason": _reason(file, error)} for file, error in skipped.items()],
@@ -86,6 +103,12 @@ def classify(
         )
         return
     _print(results, skipped)
+
+
+def _shipped(class_names: Sequence[str]) -> "dict[str, CompiledModel]":
+    """The shipped models of these classes by their digests; a class of others is compared with its exemplars."""
+    shipping = [name for name in class_names if name in list_classes()]
+    return {compiled.model.digest: compiled for name in shipping for compiled in load_class(name)}
 
 
 def _print(results: list[dict[str, Any]], skipped: dict[str, MeshFileError]) -> None:
@@ -107,7 +130,3 @@ def _print(results: list[dict[str, Any]], skipped: dict[str, MeshFileError]) -> 
 def _reason(file: str, error: MeshFileError) -> str:
     place = (error.where or "").removeprefix(ascii(file)).lstrip(": ")
     return f"{place}: {error.message}" if place else error.message
-
-
-def _listed(values: dict[str, float], what: str) -> list[dict[str, Any]]:
-    return [{"class_name": name, what: value} for name, value in values.items()]

@@ -30,7 +30,9 @@ from shapewright.whole_file import write_whole
 
 if TYPE_CHECKING:
     from shapewright.classification import Classifier, TrainingSettings
+    from shapewright.evaluation.classification_figures import ClassificationFigures
     from shapewright.evaluation.classified import JudgedDataset
+    from shapewright.evaluation.retrieval_metrics import RetrievalFigures
     from shapewright.modeling import CompiledModel
 
 ClassifierFile = Annotated[
@@ -54,12 +56,10 @@ Baselines = Annotated[
     ),
 ]
 
-Fit = Annotated[bool, typer.Option("--fit", help="Classify with a short fit of the likeliest classes, too.")]
-
 NO_VARIATION, RANDOM_WEIGHTS = "no_variation", "random_weights"
 _TRAINING_SHARE = 0.6
 _BASELINE_SHARE = 10
-"""Baselines learn from a tenth of the pictures: more of the same objects, or of noise, teach nothing more."""
+"""Baselines learn from a tenth of the pictures, for ten times as many epochs, so for as many steps."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def classification(
     limit: Limit = None,
     classes: Classes = None,
     views: Views = 10,
-    baselines: Baselines = False,
+    baselines: Baselines = True,
     fit: Annotated[
         bool, typer.Option("--fit", help="Classify with a short fit of the likeliest classes, too.")
     ] = False,
@@ -99,16 +99,15 @@ def classification(
 
       [bold]shapewright evaluate classification --dataset DIR --report classified.html[/]
       [bold]shapewright evaluate classification --dataset DIR -c classifier.onnx --json[/]
-      [bold]shapewright evaluate classification --dataset DIR --baselines --seed 1[/]
+      [bold]shapewright evaluate classification --dataset DIR --no-baselines --seed 1[/]
     """
-    from shapewright.evaluation.classification_figures import evidence_of, figures_by, unknown_figures
+    from shapewright.evaluation.classification_figures import unknown_figures
 
-    options = Options(dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache, fit)
-    with _evaluated(options, report, [NO_VARIATION, RANDOM_WEIGHTS] if baselines else []) as (done, progress):
-        tables = evidence_of(done.dataset)
-        figures = {name: figures_by(done.dataset, evidence) for name, evidence in tables.items()}
+    options = Options(dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache, baselines, fit)
+    with _evaluated(options, report) as (done, progress):
+        figures = _classified(done.dataset)
         unknown = unknown_figures(done.dataset)
-        _write_report(report, done, figures={name: one.to_dict() for name, one in figures.items()}, progress=progress)
+        _write_report(report, done, progress)
     judged = done.dataset.judged
     document = {
         **_common(options, done, report),
@@ -141,7 +140,7 @@ def classification(
     stdout().print(table)
     for name, one in figures.items():
         known = "" if one.auroc_known is None else f", known against other {one.auroc_known:.3f} (AUROC)"
-        typer.echo(f"{_TITLES.get(name, name)}: {one.accuracy:.1%} of {one.n} right{known}")
+        typer.echo(f"{_TITLES[name]}: {one.accuracy:.1%} of {one.n} right{known}")
     typer.echo(f"a mesh takes {document['seconds_per_mesh_median'] * 1e3:.0f} ms (median)")
     _say_skipped(done, report)
 
@@ -153,6 +152,7 @@ def retrieval(
     limit: Limit = None,
     classes: Classes = None,
     views: Views = 10,
+    baselines: Baselines = True,
     settings_file: SettingsFile = None,
     seed: Seed = 0,
     jobs: Jobs = None,
@@ -161,34 +161,34 @@ def retrieval(
 ) -> None:
     """Tell how high the meshes of each class stand when all meshes of a dataset are ranked for it (paper section 4.2).
 
-    Average precision is compared with the paper's two baselines: the panorama distance to the default instance, and a
-    classifier that learned without variations.
+    They are ranked as `shapewright retrieve --class` ranks them. Average precision is compared with the paper's two
+    baselines, the panorama distance to the default instance and a classifier that learned without variations, and with
+    one on random weights of the network.
 
     Examples:
 
       [bold]shapewright evaluate retrieval --dataset DIR --report retrieved.html[/]
       [bold]shapewright evaluate retrieval --dataset DIR -c classifier.onnx --json[/]
     """
-    from shapewright.evaluation.classification_figures import evidence_of, retrieval_figures
-
-    options = Options(dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache)
-    with _evaluated(options, report, [NO_VARIATION]) as (done, progress):
-        measured = {
-            name: retrieval_figures(done.dataset, evidence.scores)
-            for name, evidence in evidence_of(done.dataset).items()
-        }
-        curves = {name: mean.to_dict() for name, (mean, _) in measured.items()}
-        _write_report(report, done, curves=curves, progress=progress)
-    mean, per_class = measured["all"]
+    options = Options(dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache, baselines)
+    with _evaluated(options, report) as (done, progress):
+        measured = _ranked(done.dataset)
+        if not measured:
+            raise EvaluationError("the dataset has no mesh of a class that the classifier knows", where="--dataset")
+        _write_report(report, done, progress)
+    precision = {name: mean.average_precision for name, (mean, _) in measured.items()}
+    per_class = measured["all"][1]
     document = {
         **_common(options, done, report),
         "n": len(done.dataset.judged),
-        "mean_average_precision": mean.average_precision,
-        "mean_average_precision_pictures": measured["pictures"][0].average_precision,
-        "mean_average_precision_panorama": measured["panorama_to_default"][0].average_precision,
-        "mean_average_precision_no_variation": measured[NO_VARIATION][0].average_precision,
+        "mean_average_precision": precision["all"],
+        "mean_average_precision_combined": precision.get("combined"),
+        "mean_average_precision_pictures": precision["pictures"],
+        "mean_average_precision_panorama": precision.get("panorama_to_default"),
+        "mean_average_precision_no_variation": precision.get(NO_VARIATION),
+        "mean_average_precision_random_weights": precision.get(RANDOM_WEIGHTS),
         "per_class": {name: one.to_dict() for name, one in per_class.items()},
-        "evidence": curves,
+        "evidence": {name: mean.to_dict() for name, (mean, _) in measured.items()},
     }
     if as_json:
         print_json(document)
@@ -200,12 +200,13 @@ def retrieval(
         table.add_row(name, str(one.n), f"{one.average_precision:.3f}", f"{one.first_tier:.3f}")
     stdout().print(table)
     for name, (found, _) in measured.items():
-        typer.echo(f"{_TITLES.get(name, name)}: mean average precision {found.average_precision:.3f}")
+        typer.echo(f"{_TITLES[name]}: mean average precision {found.average_precision:.3f}")
     _say_skipped(done, report)
 
 
 _TITLES = {
     "all": "all evidence",
+    "combined": "pictures, and distances in units of their spread",
     "pictures": "pictures alone",
     "fitted": "all evidence, the likeliest classes fitted",
     "panorama_to_default": "panorama distance to the default instance",
@@ -227,13 +228,14 @@ class Options:
     seed: int
     jobs: int | None
     cache: Path | None
+    baselines: bool
     fit: bool = False
 
 
 @contextmanager
-def _evaluated(options: Options, report: Path | None, baselines: Sequence[str]) -> Iterator[tuple[Evaluated, Progress]]:
+def _evaluated(options: Options, report: Path | None) -> Iterator[tuple[Evaluated, Progress]]:
     """Judge the dataset with the classifier and the baselines; the progress is what is left for a report."""
-    from shapewright.classification import load_classifier
+    from shapewright.classification import TrainingSettings, load_classifier
     from shapewright.evaluation.classified import judge_dataset
     from shapewright.evaluation.datasets import of_classes, read_dataset, spread
 
@@ -248,23 +250,28 @@ def _evaluated(options: Options, report: Path | None, baselines: Sequence[str]) 
     settings = _settings(options)
     with threads(options.jobs) as used, shown_progress("evaluating") as progress:
         training = PartialProgress(progress, 0.0, _TRAINING_SHARE)
-        learned: Mapping[str, Sequence[CompiledModel]]
+        learned: Mapping[str, Sequence[CompiledModel]] | None
         if options.classifier is not None:
             network = load_classifier(options.classifier)
-            learned = {name: load_class(name) for name in network.class_names}
+            learned = _shipped(network.class_names)
+            settings = settings or TrainingSettings.from_dict(network.metadata["settings"])
         else:
             learned = _classes_of({item.class_name for item in items})
+            settings = settings or TrainingSettings(seed=options.seed)
             network = kept_classifier(learned, load_negatives(learned), settings, training, options.cache)
-        others = {
-            name: kept_classifier(learned, [], _baseline(name, settings), training, options.cache) for name in baselines
-        }
+        others = {}
+        if options.baselines and learned is not None:
+            others = {
+                name: kept_classifier(learned, [], _baseline(name, settings), training, options.cache)
+                for name in (NO_VARIATION, RANDOM_WEIGHTS)
+            }
         training_s = time.monotonic() - started_s
         dataset = judge_dataset(
             chosen,
             network,
-            {name: models[:1] for name, models in learned.items()},
+            None if learned is None else {name: models[:1] for name, models in learned.items()},
             baselines=others,
-            fitted=_by_digest(learned) if options.fit else None,
+            fitted=_by_digest(learned or {}) if options.fit else None,
             views=options.views,
             seed=options.seed,
             jobs=used,
@@ -277,16 +284,28 @@ def _by_digest(classes: "Mapping[str, Sequence[CompiledModel]]") -> "dict[str, C
     return {compiled.model.digest: compiled for models in classes.values() for compiled in models}
 
 
-def _settings(options: Options) -> "TrainingSettings":
+def _shipped(class_names: Sequence[str]) -> "Mapping[str, Sequence[CompiledModel]] | None":
+    """The shipped models of these classes; ``None``, which leaves the baselines out, if one does not ship."""
+    missing = [name for name in class_names if name not in list_classes()]
+    if missing:
+        typer.echo(f"no models of the class {missing[0]!r} ship: there are no baselines to compare with", err=True)
+        return None
+    return {name: load_class(name) for name in class_names}
+
+
+def _settings(options: Options) -> "TrainingSettings | None":
+    """What the settings file says, with the seed that was asked for."""
     from shapewright.classification import TrainingSettings
 
-    given = {} if options.settings_file is None else read_object(options.settings_file)
-    return TrainingSettings.from_dict(given | {"seed": options.seed})
+    if options.settings_file is None:
+        return None
+    return TrainingSettings.from_dict(read_object(options.settings_file) | {"seed": options.seed})
 
 
 def _baseline(name: str, settings: "TrainingSettings") -> "TrainingSettings":
     fewer = max(settings.variations // _BASELINE_SHARE, 20)
-    plain = replace(settings, variations=fewer, negatives=0, exemplars=False)
+    epochs = round(settings.epochs * max(settings.variations / fewer, 1.0))
+    plain = replace(settings, variations=fewer, epochs=epochs, negatives=0, exemplars=False)
     if name == NO_VARIATION:
         return replace(plain, vary=False)
     return replace(plain, backbone="efficientnet_lite0_random")
@@ -320,20 +339,33 @@ def _common(options: Options, done: Evaluated, report: Path | None) -> dict[str,
     }
 
 
-def _write_report(
-    report: Path | None,
-    done: Evaluated,
-    *,
-    figures: Mapping[str, Mapping[str, Any]] | None = None,
-    curves: Mapping[str, Mapping[str, Any]] | None = None,
-    progress: Progress,
-) -> None:
+def _classified(dataset: "JudgedDataset") -> "dict[str, ClassificationFigures]":
+    from shapewright.evaluation.classification_figures import evidence_of, figures_by
+
+    return {name: figures_by(dataset, evidence) for name, evidence in evidence_of(dataset).items()}
+
+
+def _ranked(dataset: "JudgedDataset") -> "dict[str, tuple[RetrievalFigures, Mapping[str, RetrievalFigures]]]":
+    """Figures of every ranking; none if there is nothing of the classes to be found."""
+    from shapewright.evaluation.classification_figures import rankings_of, retrieval_figures
+
+    if all(one.label == "other" for one in dataset.judged):
+        return {}
+    return {name: retrieval_figures(dataset, scores) for name, scores in rankings_of(dataset).items()}
+
+
+def _write_report(report: Path | None, done: Evaluated, progress: Progress) -> None:
     if report is None:
         return
     from shapewright.evaluation.classifier_report import classifier_report
 
-    titles = {name: _TITLES.get(name, name) for name in figures or curves or {}}
-    page = classifier_report(done.dataset, titles, figures=figures, curves=curves, progress=progress)
+    page = classifier_report(
+        done.dataset,
+        _TITLES,
+        figures={name: one.to_dict() for name, one in _classified(done.dataset).items()},
+        curves={name: mean.to_dict() for name, (mean, _) in _ranked(done.dataset).items()},
+        progress=progress,
+    )
     report.parent.mkdir(parents=True, exist_ok=True)
     write_whole(report, page.encode())
 

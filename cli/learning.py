@@ -52,18 +52,20 @@ def kept_classifier(
 ) -> "Classifier":
     """The classifier of these models and settings: of an earlier run, or trained now and kept."""
     from shapewright.classification import load_backbone, load_classifier
-    from shapewright.classification.file_format import FORMAT_VERSION
+    from shapewright.classification.versions import learning_versions
     from shapewright.errors import ClassifierError
 
     digests = {name: [model.model.digest for model in models] for name, models in classes.items()}
     others = [model.model.digest for model in negatives]
-    what = [FORMAT_VERSION, digests, others, settings.to_dict(), load_backbone(settings.backbone).key]
+    what = [learning_versions(), digests, others, settings.to_dict(), load_backbone(settings.backbone).key]
     name = hashlib.sha256(json.dumps(what).encode()).hexdigest()[:24]
     path = cache_folder(cache, "learning") / "classifiers" / f"{name}.onnx"
     if path.is_file():
         try:
-            return load_classifier(path)
+            kept = load_classifier(path)
         except ClassifierError:
-            pass  # of an older version, or damaged: made anew
+            kept = None  # damaged: made anew
+        if kept is not None and (kept.exemplars is not None) == (settings.exemplars and settings.vary):
+            return kept
     save_classifier(learn(classes, negatives, settings, progress, cache), path)
     return load_classifier(path)

@@ -53,8 +53,13 @@ def retrieve(
         Path | None, typer.Option("--mesh", dir_okay=False, help="Find meshes like this one.", show_default=False)
     ] = None,
     evidence: Annotated[
-        EvidenceName, typer.Option(help="The classifier's word, panorama distances, or both.")
-    ] = EvidenceName.combined,
+        EvidenceName | None,
+        typer.Option(
+            help="The classifier's word, panorama distances, or both (default: the classifier's word for a class, in "
+            "which the geometry counts already, both for a model or a mesh).",
+            show_default=False,
+        ),
+    ] = None,
     instances: Annotated[
         int,
         typer.Option(
@@ -94,6 +99,9 @@ def retrieve(
         raise typer.BadParameter("name one of a class, a model, a mesh", param_hint="--class, --model, --mesh")
     _check_sheet(sheet, limit, with_query=mesh is not None)
     from shapewright.classification import MeshQuery, exemplars_file, files_digest, load_classifier, rank
+    from shapewright.classification.retrieval import default_evidence
+
+    chosen = evidence or EvidenceName(default_evidence(class_name))
 
     started_s = time.monotonic()
     files = find_meshes(sources)
@@ -101,7 +109,7 @@ def retrieve(
     network = load_classifier(classifier)
     beside = exemplars_file(classifier)
     digest = files_digest(classifier.read_bytes(), beside if beside.is_file() else None)
-    models = _models(class_name, model, network.class_names, evidence)
+    models = _models(class_name, model, network.class_names, chosen)
     with threads(jobs) as used, shown_progress("retrieving") as progress:
         indexed = index_files(
             list(dict.fromkeys([*files, *queried])),
@@ -116,14 +124,14 @@ def retrieve(
             raise MeshFileError(f"there is no mesh to look through ({_first_reason(indexed, files)})")
         query: ClassQuery | MeshQuery
         if mesh is None:
-            query = _class_query(models, evidence, instances, seed, PartialProgress(progress, 0.8, 0.95), class_name)
+            query = _class_query(models, chosen, instances, seed, PartialProgress(progress, 0.8, 0.95), class_name)
         else:
             row = indexed.index.rows_of([str(mesh)])
             if not row:
                 raise MeshFileError(_first_reason(indexed, queried), where="--mesh")
             query = MeshQuery.of(indexed.index, row[str(mesh)])
         collection = indexed.index.taken(list(rows.values()))
-        ranked = rank(collection, query, evidence.value, progress=PartialProgress(progress, 0.95, 1.0))
+        ranked = rank(collection, query, chosen.value, progress=PartialProgress(progress, 0.95, 1.0))
         shown = ranked[:limit]
         if sheet is not None:
             _draw(sheet, shown, mesh, f"of the class {class_name}" if class_name else f"like {model or 'the query'}")
@@ -132,7 +140,7 @@ def retrieve(
             {
                 "classifier": str(classifier),
                 "query": {"class": class_name, "model": model, "mesh": mesh and str(mesh)},
-                "evidence": evidence.value,
+                "evidence": chosen.value,
                 "n": len(ranked),
                 "results": [_document(place, one) for place, one in enumerate(shown, 1)],
                 "skipped_count": len(indexed.skipped),

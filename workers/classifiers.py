@@ -1,5 +1,6 @@
 """Classifiers out of the store."""
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -8,6 +9,7 @@ from workers.context import JobContext
 
 if TYPE_CHECKING:
     from shapewright.classification import Classifier
+    from shapewright.modeling import CompiledModel
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,3 +45,37 @@ def stored_classifier(context: JobContext, classifier_id: str) -> LoadedClassifi
         _kept.clear()
         _kept[key] = LoadedClassifier(Classifier(content, exemplars=exemplars), files_digest(content, path))
     return _kept[key]
+
+
+_compiled: "Final[dict[str, CompiledModel]]" = {}
+"""Models that were fitted last, by their ids."""
+_MOST_COMPILED: Final = 16
+
+
+class StoredModels(Mapping[str, "CompiledModel"]):
+    """The models that a classifier learned from by their digests, which are their ids; compiled when asked for.
+
+    Args:
+        context: of the job.
+        classifier_id: of the classifier.
+    """
+
+    def __init__(self, context: JobContext, classifier_id: str) -> None:
+        self._context = context
+        with context.database.reading() as session:
+            self._ids = tuple(catalog.get_classifier(session, classifier_id).model_ids)
+
+    def __getitem__(self, model_id: str) -> "CompiledModel":
+        if model_id not in self._ids:
+            raise KeyError(model_id)
+        if model_id not in _compiled:
+            while len(_compiled) >= _MOST_COMPILED:
+                del _compiled[next(iter(_compiled))]
+            _compiled[model_id] = self._context.load_model(model_id).compile()
+        return _compiled[model_id]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._ids)
+
+    def __len__(self) -> int:
+        return len(self._ids)

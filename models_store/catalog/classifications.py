@@ -29,7 +29,7 @@ def request_classification(
         session: a writing session.
         mesh_id: the query.
         classifier_id: which classifier to ask; ``None`` is the newest one that is ready.
-        settings: ``views`` (count of rendered views) and ``seed``.
+        settings: ``views`` (count of rendered views), ``seed`` and ``fit`` (whether classes are fitted).
         now: the time, with a zone.
         max_attempts: of the job.
 

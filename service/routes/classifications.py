@@ -33,7 +33,7 @@ def create_classification(
                 session,
                 body.mesh_id,
                 body.classifier_id,
-                {"views": body.views, "seed": body.seed},
+                {"views": body.views, "seed": body.seed, "fit": body.fit},
                 now=now(),
                 max_attempts=services.settings.max_attempts,
             )

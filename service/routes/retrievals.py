@@ -12,6 +12,7 @@ from service.errors import Problem, ProblemError, reference_error
 from service.routes import NOT_MODIFIED, binary, problems
 from service.schemas.jobs import AcceptedOut
 from service.schemas.retrievals import RetrievalIn, RetrievalOut, RetrievalPageOut
+from shapewright.classification.retrieval import default_evidence
 
 router = APIRouter(prefix="/v1/retrievals", tags=["retrievals"])
 
@@ -35,7 +36,8 @@ def create_retrieval(services: ServicesDep, response: Response, after: Backgroun
             row = catalog.request_retrieval(
                 session,
                 body.collection_id,
-                body.model_dump(include={"evidence", "limit", "instances", "seed"}),
+                body.model_dump(include={"limit", "instances", "seed"})
+                | {"evidence": body.evidence or default_evidence(body.class_name)},
                 class_name=body.class_name,
                 model_id=body.model_id,
                 mesh_id=body.mesh_id,

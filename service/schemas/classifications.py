@@ -16,6 +16,11 @@ class ClassificationIn(InBody):
     classifier_id: Identifier | None = Field(default=None, description="null: the newest that succeeded.")
     views: Annotated[int, Field(ge=1, le=200)] = Field(default=10, description="Images to average over.")
     seed: Seed = 0
+    fit: bool = Field(
+        default=False,
+        description="Also fit the models of the most probable classes to the mesh: the distance that is reached counts "
+        "instead of that of the nearest exemplar. Takes about a second; the classifier needs exemplars.",
+    )
 
 
 class ClassProbabilityOut(OutBody):
@@ -30,6 +35,16 @@ class ClassDistanceOut(OutBody):
 
     class_name: str
     distance: float
+
+
+class ClassFitOut(OutBody):
+    """How a short fit has rebuilt a mesh."""
+
+    class_name: str
+    model_id: str
+    values: list[float] = Field(description="In the order of the model's parameters.")
+    distance: float
+    exemplar_distance: float = Field(description="Where the fit began.")
 
 
 class ClassificationResultOut(OutBody):
@@ -52,6 +67,7 @@ class ClassificationResultOut(OutBody):
         default=None,
         description="Panorama distance of the nearest exemplar of each class, nearest first; null without exemplars.",
     )
+    fits: list[ClassFitOut] | None = Field(default=None, description="Of the classes that were fitted, if asked for.")
     per_view: list[list[float]] = Field(
         description="A row a view; columns in the order of the classifier's `class_names`."
     )
@@ -67,6 +83,7 @@ class ClassificationOut(OutBody):
     classifier_id: str
     views: int
     seed: int
+    fit: bool
     result: ClassificationResultOut | None
     pictures_url: str | None = Field(description="The pictures that were looked at, as one PNG file; null until then.")
     job_id: str
@@ -83,6 +100,7 @@ class ClassificationOut(OutBody):
             classifier_id=row.classifier_id,
             views=row.settings["views"],
             seed=row.settings["seed"],
+            fit=row.settings.get("fit", False),
             result=result,
             pictures_url=f"/v1/classifications/{row.id}/pictures" if row.pictures_key else None,
             job_id=row.job_id,

@@ -22,8 +22,10 @@ class RetrievalIn(InBody):
     mesh_id: Identifier | None = Field(
         default=None, description="or meshes like this one, which need not be in the collection."
     )
-    evidence: Evidence = Field(
-        default="combined", description="The classifier's probabilities, panorama distances, or both."
+    evidence: Evidence | None = Field(
+        default=None,
+        description="The classifier's probabilities, panorama distances, or both; null: both, but for a class "
+        "the probabilities, in which the geometry counts already.",
     )
     limit: Annotated[int, Field(ge=1, le=500)] = Field(default=50, description="Most meshes of the result.")
     instances: Annotated[int, Field(ge=0, le=10_000)] = Field(

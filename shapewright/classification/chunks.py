@@ -25,7 +25,7 @@ from shapewright.classification.array_store import ArrayStore
 from shapewright.classification.backbone import Backbone
 from shapewright.classification.features import FeatureExtractor
 from shapewright.classification.settings import TrainingSettings
-from shapewright.classification.sources import SERIES, Source
+from shapewright.classification.sources import MESHES_VERSION, SERIES, Source
 from shapewright.mesh import TriangleMesh
 from shapewright.progress import NULL_PROGRESS, Progress
 from shapewright.rendering.images import render_images
@@ -106,7 +106,7 @@ _PICTURE_SETTINGS: Final = (
 
 
 def _series_name(chunk: Chunk, settings: TrainingSettings) -> str:
-    return f"{chunk.source.digest[:32]}/{settings.seed}-{chunk.number}-{chunk.count}.npy"
+    return f"{chunk.source.digest[:32]}/v{MESHES_VERSION}-{settings.seed}-{chunk.number}-{chunk.count}.npy"
 
 
 def is_stored(chunk: Chunk, settings: TrainingSettings, backbone: Backbone, store: ArrayStore, described: bool) -> bool:

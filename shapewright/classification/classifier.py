@@ -45,7 +45,7 @@ class Classification:
     Args:
         class_name: the most probable class, also where the mesh may be of none.
         known: probability that the mesh is of one of the classes at all; ``None`` if the classifier has not learned
-            what is unknown.
+            what is unknown. With fits it is a little higher: what it is set by was not fitted.
         probabilities: of the classes by all evidence, given that it is one of them; highest first.
         picture_probabilities: by the pictures alone, means over the views; highest first.
         scores: of the classes, see :mod:`shapewright.classification.evidence`; comparable between meshes.
@@ -78,6 +78,19 @@ class Classification:
     def answer(self) -> str:
         """The class, or :data:`UNKNOWN`."""
         return self.class_name if self.is_known else UNKNOWN
+
+    def to_dict(self) -> dict[str, Any]:
+        """The answer as JSON values, without scores, descriptor and pictures."""
+        return {
+            "class_name": self.class_name,
+            "answer": self.answer,
+            "known": self.known,
+            "probabilities": _listed(self.probabilities, "probability"),
+            "picture_probabilities": _listed(self.picture_probabilities, "probability"),
+            "distances": None if self.distances is None else _listed(self.distances, "distance"),
+            "fits": None if self.fits is None else [{"class_name": n} | fit.to_dict() for n, fit in self.fits.items()],
+            "per_view": np.asarray(self.per_view, dtype=np.float64).tolist(),
+        }
 
 
 class Classifier:
@@ -223,6 +236,10 @@ class Classifier:
     def _curve(self, evidence: str) -> KnownCurve | None:
         values = self.metadata["known"][evidence]
         return None if values is None else KnownCurve.from_dict(values)
+
+
+def _listed(values: Mapping[str, float], what: str) -> list[dict[str, Any]]:
+    return [{"class_name": name, what: float(value)} for name, value in values.items()]
 
 
 def exemplars_file(onnx: Path) -> Path:

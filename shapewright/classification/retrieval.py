@@ -27,6 +27,12 @@ from shapewright.progress import NULL_PROGRESS, Progress
 Evidence = Literal["probabilities", "panorama", "combined"]
 EVIDENCE: Final[tuple[Evidence, ...]] = get_args(Evidence)
 
+
+def default_evidence(class_name: str | None) -> Evidence:
+    """What to rank by if nobody says: the geometry of a class counts in its probabilities already."""
+    return "combined" if class_name is None else "probabilities"
+
+
 PROBABILITY_FLOOR: Final = 1e-6
 """Below this, probabilities are rounding noise of a softmax and count alike."""
 

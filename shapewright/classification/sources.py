@@ -15,6 +15,8 @@ from jaxtyping import Float
 from shapewright.classification import negatives
 from shapewright.mesh import TriangleMesh
 
+MESHES_VERSION: Final = 1
+"""Raise it when the same model gives other variations for the same generator, or they have other surfaces."""
 SERIES: Final = 64
 """Meshes that one random generator gives at most; the shorter series are beginnings of the longer ones."""
 

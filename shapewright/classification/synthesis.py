@@ -7,7 +7,7 @@ nothing has to be aligned.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Final, Protocol, runtime_checkable
+from typing import Any, Final, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -63,6 +63,15 @@ class Fit:
     values: Float[np.ndarray, " P"]
     distance: float
     exemplar_distance: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values, ready for JSON; ``values`` in the order of the model's parameters."""
+        return {
+            "model_id": self.digest,
+            "values": self.values.tolist(),
+            "distance": self.distance,
+            "exemplar_distance": self.exemplar_distance,
+        }
 
 
 def fit_class(

@@ -9,6 +9,7 @@ from jaxtyping import Float
 
 from shapewright.classification.calibration import auroc
 from shapewright.classification.evidence import OTHER
+from shapewright.classification.retrieval import combined_scores
 from shapewright.evaluation.classified import Judged, JudgedDataset, Said
 from shapewright.evaluation.retrieval_metrics import RetrievalFigures, figures_of, mean_figures, relevance
 
@@ -92,8 +93,10 @@ def evidence_of(dataset: JudgedDataset) -> dict[str, Evidence]:
     tables = {
         "all": Evidence.joined([one.by_all for one in judged]),
         "pictures": Evidence.joined([one.by_pictures for one in judged]),
-        "panorama_to_default": Evidence.plain([-one.base_distances for one in judged]),
     }
+    bases = [-one.base_distances for one in judged if one.base_distances is not None]
+    if bases:
+        tables["panorama_to_default"] = Evidence.plain(bases)
     fits = [one.by_fits for one in judged if one.by_fits is not None]
     if fits:
         tables["fitted"] = Evidence.joined(fits)
@@ -117,6 +120,24 @@ def unknown_figures(dataset: JudgedDataset) -> dict[str, float | None]:
         "right_of_known": share(inside, lambda one: one.found.answer == one.label),
         "refused_other": share(outside, lambda one: one.found.answer != one.found.class_name),
     }
+
+
+def rankings_of(dataset: JudgedDataset) -> dict[str, Float[np.ndarray, "N C"]]:
+    """What each kind of evidence and each baseline ranks every mesh by, for each class.
+
+    ``all`` and ``combined`` are what :func:`shapewright.classification.retrieval.rank` ranks by, for the evidence
+    ``probabilities`` and, with the classifier's exemplars as instances, for ``combined``.
+    """
+    judged = dataset.judged
+    known = np.array([1.0 if one.found.known is None else one.found.known for one in judged])[:, None]
+    tables = {name: evidence.scores for name, evidence in evidence_of(dataset).items()}
+    tables["all"] = known * np.stack([one.by_all.probabilities for one in judged])
+    distances = [one.distances for one in judged if one.distances is not None]
+    if distances:
+        pictured = known * np.stack([one.by_pictures.probabilities for one in judged])
+        columns = zip(pictured.T, np.stack(distances).T, strict=True)
+        tables["combined"] = np.stack([combined_scores(one, distance) for one, distance in columns], axis=1)
+    return tables
 
 
 def retrieval_figures(

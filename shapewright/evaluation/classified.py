@@ -28,7 +28,9 @@ class Judged:
         by_all: said by all evidence.
         by_pictures: said by the pictures alone.
         by_fits: said by all evidence with the most probable classes fitted; ``None`` if nobody asked for that.
-        base_distances: panorama distance to the base instances of each class: the smallest over its models.
+        distances: panorama distance to the nearest exemplar of each class; ``None`` without exemplars.
+        base_distances: panorama distance to the base instances of each class: the smallest over its models;
+            ``None`` if not every class has a model at hand.
         baselines: probabilities of classes by other classifiers, by their names.
         seconds: reading apart: for drawing, describing and comparing.
         fitted_seconds: the same with the fits.
@@ -40,7 +42,8 @@ class Judged:
     by_all: "Said"
     by_pictures: "Said"
     by_fits: "Said | None"
-    base_distances: Float[np.ndarray, " C"]
+    distances: Float[np.ndarray, " C"] | None
+    base_distances: Float[np.ndarray, " C"] | None
     baselines: Mapping[str, Float[np.ndarray, " C"]]
     seconds: float
     fitted_seconds: float | None = None
@@ -92,7 +95,7 @@ class JudgedDataset:
 def judge_dataset(
     items: Sequence[LabelledFile],
     classifier: Classifier,
-    bases: Mapping[str, Sequence[CompiledModel]],
+    bases: Mapping[str, Sequence[CompiledModel]] | None,
     *,
     baselines: Mapping[str, Classifier] | None = None,
     fitted: Mapping[str, CompiledModel] | None = None,
@@ -106,7 +109,7 @@ def judge_dataset(
     Args:
         items: the meshes; classes that the classifier does not know count as :data:`OTHER`.
         classifier: what is measured.
-        bases: models whose base instances stand for each class, as the paper compares.
+        bases: models whose base instances stand for each class, as the paper compares; ``None`` compares with none.
         baselines: other classifiers of the same classes that look at pictures of their own.
         fitted: models by digest; each mesh is classified with fits, too.
         views: pictures of each mesh.
@@ -118,13 +121,13 @@ def judge_dataset(
         EvaluationError: no mesh could be read, or a baseline knows other classes.
         RenderingError: no headless OpenGL.
     """
-    others = dict(baselines or {})
+    names, others = classifier.class_names, dict(baselines or {})
     for name, other in others.items():
-        if other.class_names != classifier.class_names:
+        if other.class_names != names:
             raise EvaluationError("a baseline knows other classes", where=name)
-    base_descriptors = {
-        name: np.stack([_base_descriptor(model) for model in bases[name]]) for name in classifier.class_names
-    }
+    base_descriptors = None
+    if bases is not None:
+        base_descriptors = [np.stack([_base_descriptor(model) for model in bases[name]]) for name in names]
     judged: list[Judged] = []
     skipped: list[Skipped] = []
     for number, (item, mesh) in enumerate(load_each(items, jobs=jobs)):
@@ -138,14 +141,14 @@ def judge_dataset(
             skipped.append(Skipped(item.file, error.message))
     if not judged:
         raise EvaluationError("there is no mesh to classify", where=skipped[0].file if skipped else None)
-    return JudgedDataset(classifier.class_names, tuple(judged), tuple(skipped))
+    return JudgedDataset(names, tuple(judged), tuple(skipped))
 
 
 def _judge(
     item: LabelledFile,
     mesh: TriangleMesh,
     classifier: Classifier,
-    bases: Mapping[str, Float[np.ndarray, "K D"]],
+    bases: Sequence[Float[np.ndarray, "K D"]] | None,
     others: Mapping[str, Classifier],
     fitted: Mapping[str, CompiledModel] | None,
     views: int,
@@ -155,7 +158,10 @@ def _judge(
     started_s = time.perf_counter()
     found = classifier.classify(mesh, views=views, rng=np.random.default_rng(seed))
     seconds = time.perf_counter() - started_s
-    descriptor = found.descriptor or panorama_descriptor(mesh.vertices, mesh.faces)
+    base_distances = None
+    if bases is not None:
+        descriptor = found.descriptor or panorama_descriptor(mesh.vertices, mesh.faces)
+        base_distances = np.array([panorama_distances(descriptor, base).min() for base in bases])
 
     def row(values: Mapping[str, float]) -> Float[np.ndarray, " C"]:
         return np.array([values[name] for name in names])
@@ -177,7 +183,8 @@ def _judge(
         by_all=Said(row(found.probabilities), row(found.scores)),
         by_pictures=Said(row(found.picture_probabilities), row(found.picture_scores)),
         by_fits=by_fits,
-        base_distances=np.array([panorama_distances(descriptor, bases[name]).min() for name in names]),
+        distances=None if found.distances is None else row(found.distances),
+        base_distances=base_distances,
         baselines={name: row(probabilities) for name, probabilities in said.items()},
         seconds=seconds,
         fitted_seconds=fitted_seconds,

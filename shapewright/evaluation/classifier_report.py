@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import cycle
 from typing import Any, Final
 
 from shapewright.classification.evidence import OTHER
@@ -14,7 +15,7 @@ from shapewright.rendering import render_mesh, three_quarter_view
 MOST_OTHERS: Final = 60
 """Others that were taken for a class, the surest first, that are shown at most."""
 
-_COLORS: Final = ("#1d6fd1", "#d1661d", "#3c9d4e", "#8a4fc4", "#777777")
+_COLORS: Final = ("#1d6fd1", "#d1661d", "#3c9d4e", "#8a4fc4", "#777777", "#b8a000", "#00a0a8")
 _WIDTH, _HEIGHT = 420, 260
 
 
@@ -32,8 +33,8 @@ def classifier_report(
     dataset: JudgedDataset,
     titles: Mapping[str, str],
     *,
-    figures: Mapping[str, Mapping[str, Any]] | None = None,
-    curves: Mapping[str, Mapping[str, Any]] | None = None,
+    figures: Mapping[str, Mapping[str, Any]],
+    curves: Mapping[str, Mapping[str, Any]],
     progress: Progress = NULL_PROGRESS,
 ) -> str:
     """Write the page.
@@ -52,8 +53,8 @@ def classifier_report(
     misses = [one for one in inside if one.found.class_name != one.label]
     refused = [one for one in inside if one.found.answer not in (one.label, one.found.class_name)]
     taken = [one for one in dataset.judged if one.label == OTHER and one.found.answer == one.found.class_name]
-    taken = sorted(taken, key=lambda one: -(one.found.known or 0.0))[:MOST_OTHERS]
-    pictures = _pictures([*misses, *refused, *taken], progress)
+    surest = sorted(taken, key=lambda one: -(one.found.known or 0.0))[:MOST_OTHERS]
+    pictures = _pictures([*misses, *refused, *surest], progress)
 
     def shown(chosen: list[Judged]) -> list[Picture]:
         return [pictures[one.item.file] for one in chosen if one.item.file in pictures]
@@ -66,13 +67,14 @@ def classifier_report(
             n_other=len(dataset.judged) - len(inside),
             class_names=dataset.class_names,
             titles=titles,
-            figures=figures or {},
-            curves=[_curve(titles[name], _COLORS[i], one) for i, (name, one) in enumerate((curves or {}).items())],
+            figures=figures,
+            curves=[_curve(titles[name], color, one) for color, (name, one) in zip(cycle(_COLORS), curves.items())],
             width=_WIDTH,
             height=_HEIGHT,
             misses=shown(misses),
             refused=shown(refused),
-            taken=shown(taken),
+            taken=shown(surest),
+            taken_count=len(taken),
             skipped=dataset.skipped,
         )
     )

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from shapewright.rendering.context import context_is_open, renderer_name, shared_context
     from shapewright.rendering.images import render_images
     from shapewright.rendering.mesh_sheet import LabelledMesh, compose_mesh_sheet
-    from shapewright.rendering.pictures import compose_side_by_side, render_mesh
+    from shapewright.rendering.pictures import compose_grid, compose_side_by_side, render_mesh
     from shapewright.rendering.styles import SCALE_RANGE, STYLES, WINDOW, ImageStyle
     from shapewright.rendering.views import even_views, random_views, spread_views, three_quarter_view
 
@@ -22,6 +22,7 @@ _HOMES = {
     "ImageStyle": "styles",
     "LabelledMesh": "mesh_sheet",
     "compose_contact_sheet": "contact_sheet",
+    "compose_grid": "pictures",
     "compose_mesh_sheet": "mesh_sheet",
     "compose_side_by_side": "pictures",
     "context_is_open": "context",
@@ -42,6 +43,7 @@ __all__ = [
     "ImageStyle",
     "LabelledMesh",
     "compose_contact_sheet",
+    "compose_grid",
     "compose_mesh_sheet",
     "compose_side_by_side",
     "context_is_open",

@@ -22,6 +22,17 @@ QUERY_TINT, FITTED_TINT = 2, 3
 """Colour numbers of the query (blue) and of the fitted mesh (orange)."""
 
 
+def compose_grid(images: UInt8[np.ndarray, "N H W 3"], columns: int = 5) -> UInt8[np.ndarray, "H2 W2 3"]:
+    """Pictures of one size beside and below each other; what is left of the last row is white."""
+    count, height, width, _ = images.shape
+    columns = min(count, columns)
+    rows = -(-count // columns)
+    cells = np.full((rows * columns, height, width, 3), 255, dtype=np.uint8)
+    cells[:count] = images
+    sheet = cells.reshape(rows, columns, height, width, 3).transpose(0, 2, 1, 3, 4)
+    return np.ascontiguousarray(sheet.reshape(rows * height, columns * width, 3))
+
+
 def render_mesh(
     mesh: TriangleMesh,
     *,

@@ -149,7 +149,7 @@ def test_a_classifier_is_trained_and_tells_a_brick_from_a_rod(site: Site) -> Non
             site.database, site.artifacts, data, file_name="q.ply", file_type="ply", mesh=mesh, now=now()
         )
         with site.database.writing() as session:
-            row = catalog.request_classification(session, stored.id, None, {"views": 4}, now=now())
+            row = catalog.request_classification(session, stored.id, None, {"views": 4, "fit": True}, now=now())
         run(site, row.job_id)
         with site.database.reading() as session:
             row = catalog.get_classification(session, row.id)
@@ -164,6 +164,10 @@ def test_a_classifier_is_trained_and_tells_a_brick_from_a_rod(site: Site) -> Non
         nearest, farther = row.result["distances"]
         assert nearest["class_name"] == model.class_name
         assert nearest["distance"] < farther["distance"]
+        best = {fit["class_name"]: fit for fit in row.result["fits"]}[model.class_name]
+        assert best["model_id"] == model.digest
+        assert best["values"] == [pytest.approx(0.8, abs=0.2)]
+        assert best["distance"] == nearest["distance"] <= best["exemplar_distance"]
         with Image.open(BytesIO(site.artifacts.get(row.pictures_key))) as picture:
             assert (picture.format, picture.size) == ("PNG", (4 * 64, 64))
         assert np.asarray(row.result["per_view"]).shape == (4, 2)

@@ -3,11 +3,14 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
-from command_line import shapewright
+from command_line import shapewright, write_lamp_model
 from small_dataset import write_dataset
 
+from cli.evaluate_classifier import Options, _settings
 from models_store.library.shipped import load_shipped
+from shapewright.evaluation.retrieval_metrics import average_precision
 
 SETTINGS = {"variations": 16, "images_per_variation": 2, "image_size": 128, "negatives": 8, "epochs": 15}
 
@@ -40,7 +43,7 @@ def test_classification_gives_all_figures(common: tuple[str | Path, ...], tmp_pa
     assert document["confusion"]["sword"] == {"glass_with_stem": 0, "sword": 3}
     assert sum(document["confusion"]["other"].values()) == 4
     assert 0.5 < document["auroc_known"] <= 1.0
-    assert set(document["evidence"]) == {"pictures", "panorama_to_default"}
+    assert set(document["evidence"]) == {"pictures", "panorama_to_default", "no_variation", "random_weights"}
     assert 0 < document["seconds_per_mesh_median"] < 30
     assert document["skipped_count"] == len(document["skipped"]) == 2
     assert document["unknown"]["right_of_known"] <= document["unknown"]["accepted_known"]
@@ -60,9 +63,47 @@ def test_retrieval_is_compared_with_both_baselines(common: tuple[str | Path, ...
         sum(row["average_precision"] for row in document["per_class"].values()) / 2
     )
     assert document["mean_average_precision"] > 0.8
-    for baseline in ("panorama", "no_variation"):
-        assert 0.0 < document[f"mean_average_precision_{baseline}"] <= 1.0
-    assert report.read_text().count("<polyline") == 4
+    for other in ("combined", "pictures", "panorama", "no_variation", "random_weights"):
+        assert 0.0 < document[f"mean_average_precision_{other}"] <= 1.0
+    page = report.read_text()
+    assert page.count("<polyline") == 6
+    assert "What is taken for what" in page
+
+
+def test_a_ranking_is_the_one_that_retrieve_gives(
+    common: tuple[str | Path, ...], dataset: Path, tmp_path: Path
+) -> None:
+    arguments = ("--settings", dataset / "settings.json", "--cache", common[-1])
+    trained = shapewright("train", "sword_katana", "glass_with_stem", "-o", tmp_path / "c.onnx", *arguments)
+    assert trained.status == 0, trained.stderr
+    options = ("-c", tmp_path / "c.onnx", "--dataset", dataset, "--no-baselines", "--json")
+    figures = shapewright("evaluate", "retrieval", *options).document
+    assert figures["mean_average_precision_no_variation"] is None
+    folder = dataset / "meshes"
+    for name, one in figures["per_class"].items():
+        found = shapewright("retrieve", folder, "-c", tmp_path / "c.onnx", "--class", name, "--limit", 99, "--json")
+        ranking = [Path(row["file"]).name.startswith(name) for row in found.document["results"]]
+        assert average_precision(np.array(ranking)) == pytest.approx(one["average_precision"])
+
+
+def test_a_classifier_of_classes_that_do_not_ship_has_no_baselines(dataset: Path, tmp_path: Path) -> None:
+    lamp = write_lamp_model(tmp_path)
+    arguments = ("--settings", dataset / "settings.json", "--cache", tmp_path / "cache")
+    trained = shapewright("train", "sword_katana", lamp, "-o", tmp_path / "mine.onnx", *arguments)
+    assert trained.status == 0, trained.stderr
+    outcome = shapewright("evaluate", "classification", "--dataset", dataset, "-c", tmp_path / "mine.onnx", "--json")
+    assert outcome.status == 0, outcome.stderr
+    assert "no models of the class 'lamp' ship" in outcome.stderr
+    assert set(outcome.document["evidence"]) == {"pictures"}
+    assert outcome.document["n"] == 3
+
+
+def test_the_seed_that_is_asked_for_counts(dataset: Path, tmp_path: Path) -> None:
+    with_seed = tmp_path / "settings.json"
+    with_seed.write_text(json.dumps(SETTINGS | {"seed": 7}))
+    chosen = _settings(Options(dataset, None, None, None, 10, with_seed, 3, None, None, baselines=False))
+    assert chosen is not None
+    assert chosen.seed == 3
 
 
 @pytest.mark.parametrize("verb", ["classification", "retrieval"])

@@ -52,9 +52,25 @@ def test_meshes_are_told_apart(folder: Path) -> None:
         shares = [row["probability"] for row in result["probabilities"]]
         assert sum(shares) == pytest.approx(1.0, abs=1e-3)
         assert shares == sorted(shares, reverse=True)
+        assert np.shape(result["per_view"]) == (6, 2)
+        assert np.sum(result["per_view"], axis=1) == pytest.approx(1.0, abs=1e-3)
+        assert (result["fits"], result["picture"]) == (None, None)
     table = shapewright(*arguments, "--views", 2).stdout
     assert "lamp" in table
     assert "slab" in table
+
+
+def test_a_classification_shows_what_was_looked_at(folder: Path, tmp_path: Path) -> None:
+    arguments = ("classify", folder / "query-lamp.off", "-c", folder / "out/classifier.onnx", "--views", 7)
+    (result,) = shapewright(*arguments, "--pictures", tmp_path / "seen", "--fit", "--json").document["results"]
+    assert result["fits"] == [], "no models of these classes ship"
+    assert Path(result["picture"]) == tmp_path / "seen" / "1-query-lamp.png"
+    with Image.open(result["picture"]) as picture:
+        size = picture.size[0] // 5
+        assert picture.size == (5 * size, 2 * size)
+        pixels = np.asarray(picture)
+    assert (pixels[size:, 2 * size :] == 255).all()
+    assert all((pixels[:size, n * size : (n + 1) * size] < 250).any() for n in range(5))
 
 
 def test_a_folder_is_classified_without_what_cannot_be_used(folder: Path, tmp_path: Path) -> None:

@@ -50,7 +50,8 @@ def files(outcome: Outcome) -> list[str]:
 
 
 def test_the_most_probable_come_first_and_nothing_is_left_out_in_silence() -> None:
-    outcome = retrieve("--class", "slab", "--evidence", "probabilities", "--json")
+    outcome = retrieve("--class", "slab", "--json")
+    assert outcome.document["evidence"] == "probabilities"
     assert set(files(outcome)[:3]) == {"slab0.off", "slab1.off", "deep.PLY"}
     document = outcome.document
     assert document["n"] == 5
@@ -131,7 +132,7 @@ def test_a_table_and_a_sheet_for_people(tmp_path: Path) -> None:
         ((), "name one of a class, a model, a mesh"),
         (("--class", "rod", "--mesh", "meshes/rod0.off"), "name one of a class, a model, a mesh"),
         (("--class", "teapot"), "--class: the classifier does not know the class 'teapot' (but: rod, slab)"),
-        (("--class", "rod"), "--evidence probabilities"),  # no model of this class ships
+        (("--class", "rod", "--evidence", "combined"), "--evidence probabilities"),  # no model of this class ships
         (("--model", "nothing"), "neither a file nor a shipped model"),
         (("--model", "table"), "does not know the class 'table'"),
         (("--mesh", "missing.off"), "no such file"),

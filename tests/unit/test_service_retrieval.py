@@ -73,6 +73,7 @@ def test_a_collection_is_accepted_and_its_index_comes(service: LiveService) -> N
         ({"class_name": "crate", "evidence": "probabilities", "limit": 2}, ("probabilities", 2, 500)),
         ({"model_id": "MODEL", "instances": 0, "seed": 3}, ("combined", 50, 0)),
         ({"mesh_id": "MESH"}, ("combined", 50, 500)),
+        ({"class_name": "crate"}, ("probabilities", 50, 500)),
     ],
 )
 def test_a_retrieval_is_accepted_and_its_ranking_comes(

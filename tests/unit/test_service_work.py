@@ -133,6 +133,9 @@ RESULT: dict[str, Any] = {
         {"class_name": "crate", "probability": 0.5},
     ],
     "distances": [{"class_name": "crate", "distance": 0.2}, {"class_name": "box", "distance": 0.3}],
+    "fits": [
+        {"class_name": "crate", "model_id": "a" * 64, "values": [0.9], "distance": 0.2, "exemplar_distance": 0.25}
+    ],
     "per_view": [[0.2, 0.8], [0.3, 0.7]],
     "seconds": 0.1,
 }
@@ -143,12 +146,12 @@ def test_a_mesh_is_classified_by_the_newest_classifier(service: LiveService) -> 
     url = "/v1/classifications"
     problem(service.client.post(url, json={"mesh_id": mesh}), 409, "classifier_id")
     classifier = train(service)
-    response = service.client.post(url, json={"mesh_id": mesh, "views": 2, "seed": 7})
+    response = service.client.post(url, json={"mesh_id": mesh, "views": 2, "seed": 7, "fit": True})
     assert response.status_code == 202
     accepted = response.json()
     waiting = service.client.get(accepted["url"]).json()
     assert (waiting["classifier_id"], waiting["result"]) == (classifier["id"], None)
-    assert (waiting["views"], waiting["seed"]) == (2, 7)
+    assert (waiting["views"], waiting["seed"], waiting["fit"]) == (2, 7, True)
     problem(service.client.get(f"{accepted['url']}/pictures"), 404)
     service.services.artifacts.put("classifications/one.png", b"png")
     service.work(
@@ -178,7 +181,7 @@ def test_an_answer_of_an_older_version_can_be_read(service: LiveService) -> None
         accepted["job"]["id"], partial(catalog.record_classification, identifier=accepted["id"], result=result)
     )
     done = service.client.get(accepted["url"]).json()
-    absent = dict.fromkeys(("answer", "known", "picture_probabilities", "distances"))
+    absent = dict.fromkeys(("answer", "known", "picture_probabilities", "distances", "fits"))
     assert done["result"] == result | absent
     assert done["pictures_url"] is None
     problem(service.client.get(f"{accepted['url']}/pictures"), 404)

@@ -173,7 +173,7 @@ export function createApi(baseUrl: string, fetcher?: (request: Request) => Promi
     async classify(meshId: string, classifierId: string): Promise<Accepted> {
       return body(
         http.POST("/v1/classifications", {
-          body: { mesh_id: meshId, classifier_id: classifierId, views: 10, seed: 0 },
+          body: { mesh_id: meshId, classifier_id: classifierId, views: 10, seed: 0, fit: false },
         }),
       );
     },

@@ -671,6 +671,28 @@ export interface components {
             distance: number;
         };
         /**
+         * ClassFitOut
+         * @description How a short fit has rebuilt a mesh.
+         */
+        ClassFitOut: {
+            /** Class Name */
+            class_name: string;
+            /** Model Id */
+            model_id: string;
+            /**
+             * Values
+             * @description In the order of the model's parameters.
+             */
+            values: number[];
+            /** Distance */
+            distance: number;
+            /**
+             * Exemplar Distance
+             * @description Where the fit began.
+             */
+            exemplar_distance: number;
+        };
+        /**
          * ClassOut
          * @description A class of objects: the set of models that share its name.
          */
@@ -729,6 +751,12 @@ export interface components {
              * @default 0
              */
             seed: number;
+            /**
+             * Fit
+             * @description Also fit the models of the most probable classes to the mesh: the distance that is reached counts instead of that of the nearest exemplar. Takes about a second; the classifier needs exemplars.
+             * @default false
+             */
+            fit: boolean;
         };
         /**
          * ClassificationOut
@@ -746,6 +774,8 @@ export interface components {
             views: number;
             /** Seed */
             seed: number;
+            /** Fit */
+            fit: boolean;
             result: components["schemas"]["ClassificationResultOut"] | null;
             /**
              * Pictures Url
@@ -808,6 +838,11 @@ export interface components {
              * @description Panorama distance of the nearest exemplar of each class, nearest first; null without exemplars.
              */
             distances: components["schemas"]["ClassDistanceOut"][] | null;
+            /**
+             * Fits
+             * @description Of the classes that were fitted, if asked for.
+             */
+            fits: components["schemas"]["ClassFitOut"][] | null;
             /**
              * Per View
              * @description A row a view; columns in the order of the classifier's `class_names`.
@@ -1802,11 +1837,9 @@ export interface components {
             mesh_id?: string | null;
             /**
              * Evidence
-             * @description The classifier's probabilities, panorama distances, or both.
-             * @default combined
-             * @enum {string}
+             * @description The classifier's probabilities, panorama distances, or both; null: both, but for a class the probabilities, in which the geometry counts already.
              */
-            evidence: "probabilities" | "panorama" | "combined";
+            evidence?: ("probabilities" | "panorama" | "combined") | null;
             /**
              * Limit
              * @description Most meshes of the result.

@@ -76,7 +76,7 @@ function Query({ collection, retrieval, retrievals }: CollectionInspectorProps) 
   const now = useNow(10_000);
   const classes = classifiers.data?.items.find(({ id }) => id === collection.classifier_id)?.class_names ?? [];
   const [chosen, setChosen] = useState<string | null>(null);
-  const [evidence, setEvidence] = useState<Evidence>("combined");
+  const [evidence, setEvidence] = useState<Evidence>("probabilities");
   const className = chosen ?? retrieval?.class_name ?? classes[0] ?? null;
   const live = useJob(retrieval && retrieval.state !== "succeeded" ? retrieval.job_id : null);
   return (

@@ -1,0 +1,25 @@
+"""Versions of everything that a trained classifier depends on beside models, settings and backbone."""
+
+from typing import Final
+
+LEARNING_VERSION: Final = 2
+"""Raise it when the same features and descriptors give another classifier."""
+
+
+def learning_versions() -> list[int]:
+    """What a classifier that is kept has to have been made by, to be worth keeping."""
+    from shapewright.classification import negatives
+    from shapewright.classification.chunks import PICTURES_VERSION
+    from shapewright.classification.file_format import FORMAT_VERSION
+    from shapewright.classification.sources import MESHES_VERSION
+    from shapewright.distances import panorama
+
+    return [
+        FORMAT_VERSION,
+        LEARNING_VERSION,
+        PICTURES_VERSION,
+        MESHES_VERSION,
+        negatives.VERSION,
+        negatives.MIXED_VERSION,
+        panorama.VERSION,
+    ]
