@@ -5,6 +5,7 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -200,7 +201,7 @@ class ProceduralModel:
         """
         write_whole(path, self.to_json().encode())
 
-    @property
+    @cached_property
     def digest(self) -> str:
         """The content address: SHA-256 of the canonical text, in hexadecimal."""
         return hashlib.sha256(self.to_json().encode()).hexdigest()
