@@ -90,6 +90,17 @@ def claim(session: Session, job_id: str, *, now: datetime, lease: timedelta, wor
     )
 
 
+def claim_waiting(session: Session, *, now: datetime, lease: timedelta, worker: str = "") -> Claim | None:
+    """Take the job that has waited longest of those that nobody has tried; for a worker whose wake-up was for nothing.
+
+    Wake-ups of a busy worker pile up, and each is a while on its way: new work shall not wait behind all of them. One
+    that has been tried comes back when the sweeper says so.
+    """
+    waits = (JobRow.state == JobState.QUEUED, JobRow.parent_id.is_(None), JobRow.attempt == 0)
+    job_id = session.scalar(select(JobRow.id).where(*waits).order_by(JobRow.created_at, JobRow.id).limit(1))
+    return None if job_id is None else claim(session, job_id, now=now, lease=lease, worker=worker)
+
+
 def others_wait(session: Session, *, now: datetime) -> bool:
     """Whether somebody's own job waits, or has just ended: no part of another job is given out then."""
     return bool(session.scalar(select(_others_wait(now))))

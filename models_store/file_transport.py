@@ -21,7 +21,7 @@ from kombu.transport import TRANSPORT_ALIASES, virtual
 log = logging.getLogger(__name__)
 
 SCHEME: Final = "shapewright-folder"
-POLLING_INTERVAL_S: Final = 0.2
+POLLING_INTERVAL_S: Final = 0.05
 _LONGEST_WAIT_S: Final = 0.5
 _QUEUE_NAME: Final = re.compile(r"[A-Za-z0-9@_-][A-Za-z0-9@._-]*")
 

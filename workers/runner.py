@@ -54,20 +54,19 @@ class Runner:
         self._worker = f"{socket.gethostname()}:{os.getpid()}"
 
     def run(self, job_id: str) -> None:
-        """Carry out the job if it is queued; a doubled, late or unknown delivery does nothing."""
-        with structlog.contextvars.bound_contextvars(job_id=job_id):
-            if self._stop_notice.is_due:
-                return  # it stays queued for another worker
-            try:
-                held = self._claim(job_id)
-            except OUTAGES as error:
-                log.warning("database away, job stays queued", error=str(error))
-                return
-            if held is None:
-                log.info("nothing to do for this delivery")
-                return
-            with structlog.contextvars.bound_contextvars(kind=held.kind.value, attempt=held.attempt):
-                self._work(held)
+        """Carry out the job if it is queued; for a doubled, late or unknown delivery the job that has waited longest."""
+        if self._stop_notice.is_due:
+            return  # it stays queued for another worker
+        try:
+            held = self._claim(job_id)
+        except OUTAGES as error:
+            log.warning("database away, job stays queued", job_id=job_id, error=str(error))
+            return
+        if held is None:
+            log.info("nothing to do for this delivery", job_id=job_id)
+            return
+        with structlog.contextvars.bound_contextvars(job_id=held.job_id, kind=held.kind.value, attempt=held.attempt):
+            self._work(held)
 
     def close(self) -> None:
         """Close the database connections, and end the process that reads files."""
@@ -75,9 +74,10 @@ class Runner:
         self._reader.close()
 
     def _claim(self, job_id: str) -> Claim | None:
-        lease = timedelta(seconds=self._settings.lease_s)
+        lease, now = timedelta(seconds=self._settings.lease_s), self._clock()
         with self._database.writing() as session:
-            return claims.claim(session, job_id, now=self._clock(), lease=lease, worker=self._worker)
+            held = claims.claim(session, job_id, now=now, lease=lease, worker=self._worker)
+            return held or claims.claim_waiting(session, now=now, lease=lease, worker=self._worker)
 
     def _work(self, held: Claim) -> None:
         log.info("job started")

@@ -121,6 +121,25 @@ def test_a_second_delivery_is_harmless(bench: Bench) -> None:
     assert bench.job(job_id).attempt == 1
 
 
+def test_a_delivery_too_many_begins_what_has_waited_longest(bench: Bench) -> None:
+    """Deliveries of a busy worker pile up; new work must not wait behind those whose jobs are done."""
+    done = bench.run(lambda context: Outcome(nothing))
+    waiting = [queue_job(bench.database, now()) for _ in range(2)]
+    bench.run(lambda context: Outcome(nothing), done)
+    assert [bench.job(job_id).state for job_id in waiting] == [JobState.SUCCEEDED, JobState.QUEUED]
+
+
+def test_a_delivery_too_many_begins_nothing_that_shall_wait(bench: Bench) -> None:
+    done = bench.run(lambda context: Outcome(nothing))
+
+    def broken(context: JobContext) -> Outcome:
+        raise ZeroDivisionError
+
+    later = bench.run(broken, retry_delay_s=60)
+    bench.run(lambda context: pytest.fail("it is tried again in a minute"), done)
+    assert bench.job(later).state is JobState.QUEUED
+
+
 def test_an_error_of_the_library_is_final_and_clear(bench: Bench) -> None:
     def task(context: JobContext) -> Outcome:
         raise MeshFileError("the file ends in the middle of a face", where="line 12")
