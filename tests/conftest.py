@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import pytest
+from runtime_types import check_library
 from services import PostgresServer, RedisServer, ServiceMissingError, find_chromium
 
 if TYPE_CHECKING:
@@ -13,6 +14,8 @@ if TYPE_CHECKING:
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 T = TypeVar("T")
+
+check_library(REPOSITORY / "shapewright")
 
 
 def _or_skip(start: Callable[[], T]) -> T:

@@ -14,8 +14,7 @@ from PIL import Image
 
 from shapewright.mesh_file import load_mesh
 
-FEW_CLASSES = ("--class", "glass_with_stem", "--class", "sword", "--class", "table")
-SMALL = (*FEW_CLASSES, "--variations", "12", "--images", "4", "--samples", "30")
+FEW = ("--variations", "16", "--images", "4", "--samples", "40")
 
 
 def _environment() -> dict[str, str]:
@@ -25,8 +24,9 @@ def _environment() -> dict[str, str]:
 @pytest.mark.timeout(300)
 def test_the_demo_once_on_its_sample(repository: Path, tmp_path: Path) -> None:
     coarse = tmp_path / "coarse.json"
-    coarse.write_text('{"surface_points": 100, "image_size": 32, "step_sizes": [0.5, 0.2]}')
-    options = (*FEW_CLASSES, "--samples", "100", "--settings", coarse, "--output", tmp_path / "out")
+    coarse.write_text('{"surface_points": 100, "image_size": 32, "step_sizes": [0.5]}')
+    classes = ("--class", "glass_with_stem", "--class", "sword", "--class", "table")
+    options = (*classes, *FEW, "--settings", coarse, "--output", tmp_path / "out")
     done = subprocess.run(
         [sys.executable, "-m", "cli", "demo", "--once", "--json", *options],
         capture_output=True,
@@ -58,10 +58,12 @@ def test_the_demo_once_on_its_sample(repository: Path, tmp_path: Path) -> None:
 def test_it_keeps_serving_and_uses_a_kept_folder_again(tmp_path: Path) -> None:
     coarse = tmp_path / "coarse.json"
     coarse.write_text('{"surface_points": 50, "image_size": 16, "subdivision_steps": 0, "step_sizes": [0.5]}')
-    arguments = [*SMALL, "--data-dir", str(tmp_path / "data"), "--output", str(tmp_path / "out"), "--settings", coarse]
-    mesh = tmp_path / "sword.off"
+    classes = ("--class", "chair", "--class", "stool")  # a model each
+    folders = ("--data-dir", tmp_path / "data", "--output", tmp_path / "out")
+    arguments = [*classes, *FEW, *folders, "--settings", coarse]
+    mesh = tmp_path / "stool.off"
     command = [sys.executable, "-m", "cli"]
-    subprocess.run([*command, "instance", "sword", "-o", mesh], check=True, capture_output=True)
+    subprocess.run([*command, "instance", "stool", "-o", mesh], check=True, capture_output=True)
     subprocess.run([*command, "demo", mesh, "--once", *arguments], check=True, capture_output=True, env=_environment())
 
     process = subprocess.Popen(

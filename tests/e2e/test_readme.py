@@ -7,12 +7,21 @@ from typing import Any
 import numpy as np
 import pytest
 
+from shapewright.distances.alignment import AlignmentSettings
+
 LESS = {
     "variations=100, images_per_variation=5, negatives=50": "variations=16, images_per_variation=3, negatives=8",
     "EstimationSettings.quick()": "EstimationSettings(**less)",
     "default_rng(0), 1000)": "default_rng(0), 10)",
 }
-FEW = {"samples": 40, "surface_points": 200, "image_size": 48, "subdivision_steps": 1, "step_sizes": (0.5,)}
+FEW = {
+    "samples": 40,
+    "surface_points": 100,
+    "image_size": 32,
+    "subdivision_steps": 0,
+    "step_sizes": (0.5,),
+    "alignment": AlignmentSettings(0.1, 0.1 * np.pi, 0.1),
+}
 
 
 def blocks(repository: Path) -> list[str]:
