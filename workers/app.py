@@ -97,7 +97,7 @@ def create_celery(settings: WorkerSettings | None = None) -> WorkerCelery:
 
 
 def _register(celery: WorkerCelery, kind: JobKind) -> None:
-    @celery.task(name=TASK_NAMES[kind], ignore_result=True)  # type: ignore[untyped-decorator]
+    @celery.task(name=TASK_NAMES[kind], shared=False, ignore_result=True)  # type: ignore[untyped-decorator]
     def run(job_id: str) -> None:
         """The message is a hint; kind and work are in the row."""
         celery.run_job(job_id)

@@ -96,6 +96,14 @@ def test_every_kind_of_job_has_its_task(tmp_path: Path) -> None:
     assert not (tmp_path / "data").exists()  # nothing is opened before the first job
 
 
+def test_applications_in_one_process_have_tasks_of_their_own(tmp_path: Path) -> None:
+    first, second = (create_celery(WorkerSettings(data_dir=tmp_path / name)) for name in ("first", "second"))
+    name = TASK_NAMES[JobKind.CLASSIFY]
+    assert first.tasks[name].app is first
+    assert second.tasks[name].app is second
+    assert first.tasks[name] is not second.tasks[name]
+
+
 def test_the_result_is_written_with_the_end(bench: Bench) -> None:
     written = []
 
