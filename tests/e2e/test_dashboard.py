@@ -314,9 +314,15 @@ def test_from_an_unknown_mesh_to_its_parameters(new_page: Callable[..., Page], l
     stage = _drawn(page, "mesh ")
     query_alone = _picture(stage, tmp_path / "query.png")
 
+    page.get_by_text("How it learned").click()
+    expect(page.get_by_role("img", name="Loss by epoch").locator("polyline")).to_have_count(2)
+    expect(page.get_by_text("of the held-out variations get their class")).to_be_visible()
+    page.get_by_label("Also fit the likeliest classes to it").check()
+    page.screenshot(path=tmp_path / "learning.png")
     page.get_by_role("button", name="Classify", exact=True).click()
     probabilities = page.get_by_test_id("probabilities")
     expect(probabilities).to_be_visible(timeout=JOB_TIMEOUT_MS)
+    expect(page.get_by_test_id("fits").get_by_role("listitem").first).to_contain_text("fitted")
     expect(probabilities.get_by_role("listitem").first).to_contain_text("Lamp")
     expect(page.get_by_test_id("answer")).to_contain_text("Lamp")  # as the class, or as the nearest one
     page.get_by_text("Pictures that were looked at").click()

@@ -170,10 +170,11 @@ export function createApi(baseUrl: string, fetcher?: (request: Request) => Promi
       return body(http.GET("/v1/classifications", { params: { query: page } }));
     },
 
-    async classify(meshId: string, classifierId: string): Promise<Accepted> {
+    async classify(input: { meshId: string; classifierId: string; fit: boolean }): Promise<Accepted> {
+      const { meshId, classifierId, fit } = input;
       return body(
         http.POST("/v1/classifications", {
-          body: { mesh_id: meshId, classifier_id: classifierId, views: 10, seed: 0, fit: false },
+          body: { mesh_id: meshId, classifier_id: classifierId, views: 10, seed: 0, fit },
         }),
       );
     },

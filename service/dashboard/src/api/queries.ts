@@ -149,8 +149,7 @@ function useStarter<Input, Output>(start: (input: Input) => Promise<Output>) {
 }
 
 export const useTrain = () => useStarter(api.trainClassifier);
-export const useClassify = () =>
-  useStarter((input: { meshId: string; classifierId: string }) => api.classify(input.meshId, input.classifierId));
+export const useClassify = () => useStarter(api.classify);
 export const useEstimate = () => useStarter(api.estimate);
 /** Index the named meshes, or all there are. */
 export const useCreateCollection = () =>

@@ -3,7 +3,7 @@ import { useState } from "react";
 import { useClassifications, useClassify } from "../api/queries";
 import type { Classification } from "../api/types";
 import { useJob } from "../hooks/useJob";
-import { count, duration, humanize, percent } from "../lib/format";
+import { count, duration, humanize, percent, significant } from "../lib/format";
 import { verdictOf } from "../lib/verdict";
 import { ClassifierPicker } from "./ClassifierPicker";
 import { JobProgress } from "./JobProgress";
@@ -32,6 +32,7 @@ export function ClassificationPanel({ meshId, classifierId, onClassifier }: Clas
   const newest = newestOf(classifications.data?.items, meshId);
   const live = useJob(newest && newest.state !== "succeeded" ? newest.job_id : null);
   const [again, setAgain] = useState(false);
+  const [fit, setFit] = useState(false);
   const running = newest !== undefined && (newest.state === "queued" || newest.state === "running");
 
   const answered = Boolean(newest?.result);
@@ -52,14 +53,20 @@ export function ClassificationPanel({ meshId, classifierId, onClassifier }: Clas
         <>
           <ClassifierPicker selectedId={classifierId} onSelect={onClassifier} />
           {classifierId !== null && !running && (
-            <button
-              type="button"
-              className="button"
-              disabled={classify.isPending}
-              onClick={() => classify.mutate({ meshId, classifierId }, { onSuccess: () => setAgain(false) })}
-            >
-              {classify.isPending ? "Starting…" : "Classify"}
-            </button>
+            <>
+              <label className="check">
+                <input type="checkbox" checked={fit} onChange={(event) => setFit(event.target.checked)} />
+                <span>Also fit the likeliest classes to it</span>
+              </label>
+              <button
+                type="button"
+                className="button"
+                disabled={classify.isPending}
+                onClick={() => classify.mutate({ meshId, classifierId, fit }, { onSuccess: () => setAgain(false) })}
+              >
+                {classify.isPending ? "Starting…" : "Classify"}
+              </button>
+            </>
           )}
         </>
       )}
@@ -70,6 +77,7 @@ export function ClassificationPanel({ meshId, classifierId, onClassifier }: Clas
         <>
           <Verdict result={newest.result} />
           <Probabilities result={newest.result} />
+          {newest.result.fits && <Fits fits={newest.result.fits} />}
         </>
       )}
       {newest?.result && newest.pictures_url && (
@@ -90,6 +98,22 @@ function Verdict({ result }: { result: Result }) {
       <strong>{verdict.title}</strong>
       {verdict.detail && <span>{verdict.detail}</span>}
     </div>
+  );
+}
+
+/** How near the short fits came, in panorama distance. */
+function Fits({ fits }: { fits: NonNullable<Result["fits"]> }) {
+  return (
+    <ul className="fits" data-testid="fits" aria-label="Fitted classes">
+      {fits.map((fit) => (
+        <li key={fit.class_name}>
+          <span>{humanize(fit.class_name)} fitted</span>
+          <span>
+            distance {significant(fit.exemplar_distance)} → <strong>{significant(fit.distance)}</strong>
+          </span>
+        </li>
+      ))}
+    </ul>
   );
 }
 

@@ -7,6 +7,7 @@ import { useJob } from "../hooks/useJob";
 import { newestVersions } from "../lib/classes";
 import { count } from "../lib/format";
 import { JobProgress } from "./JobProgress";
+import { LearningCurves } from "./LearningCurves";
 import { Problem } from "./Problem";
 
 interface ClassifierPickerProps {
@@ -38,6 +39,7 @@ export function ClassifierPicker({ selectedId, onSelect }: ClassifierPickerProps
   const [training, setTraining] = useState(false);
 
   const usable = usableClassifiers(classifiers.data?.items);
+  const selected = usable.find((classifier) => classifier.id === selectedId);
   const pending = classifiers.data?.items.find((classifier) => !isTerminal(classifier.state));
   const startedJob = train.data?.job.id ?? null;
   const live = useJob(pending?.job_id ?? startedJob);
@@ -82,6 +84,7 @@ export function ClassifierPicker({ selectedId, onSelect }: ClassifierPickerProps
           </div>
         </div>
       )}
+      {selected && <LearningCurves key={selected.id} classifier={selected} />}
       {showForm && (
         <div className="well">
           <p>

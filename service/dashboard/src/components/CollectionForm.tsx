@@ -72,7 +72,7 @@ export function CollectionForm() {
           <fieldset className="mesh-choice">
             <legend className="hint">{count(chosen.size, "mesh", "meshes")} chosen</legend>
             {items.map((mesh) => (
-              <label key={mesh.id}>
+              <label key={mesh.id} className="check">
                 <input type="checkbox" checked={chosen.has(mesh.id)} onChange={() => toggle(mesh.id)} />
                 <span>{mesh.file_name}</span>
               </label>
