@@ -54,7 +54,7 @@ class Runner:
         self._worker = f"{socket.gethostname()}:{os.getpid()}"
 
     def run(self, job_id: str) -> None:
-        """Carry out the job if it is queued; for a doubled, late or unknown delivery the job that has waited longest."""
+        """Carry out the job if it is queued; for a doubled, late or unknown delivery the one that waits longest."""
         if self._stop_notice.is_due:
             return  # it stays queued for another worker
         try:
