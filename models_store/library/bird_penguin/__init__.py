@@ -1,1 +1,1 @@
-"""The procedural model ``sword``: see build.py."""
+"""The procedural model ``bird_penguin``: see build.py."""

@@ -1,1 +1,1 @@
-"""The procedural model ``sword``: see build.py."""
+"""The procedural model ``fish_puffer``: see build.py."""

@@ -1,1 +1,1 @@
-"""The procedural model ``sword``: see build.py."""
+"""The procedural model ``fish_swimming``: see build.py."""

@@ -1,1 +1,1 @@
-"""The procedural model ``glass_with_stem``: see build.py."""
+"""The procedural model ``glass_with_stem_shell``: see build.py."""

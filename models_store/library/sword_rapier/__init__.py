@@ -1,1 +1,1 @@
-"""The procedural model ``sword``: see build.py."""
+"""The procedural model ``sword_rapier``: see build.py."""
