@@ -10,6 +10,7 @@ from models_store.library.aids.loft import Loft, Section, loft, pair
 from shapewright.modeling import Condition, Element, Recorder, Target
 
 Profile = tuple[tuple[float, float, float], ...]
+Ribs = tuple[tuple[float, float], ...]
 BODY: Profile = (
     (-0.500, 0.28, 0.22),
     (-0.400, 0.34, 0.38),
@@ -28,6 +29,9 @@ SAG, PLACE, HEAD_TILT_DEG, SWEEP = 0.06, 0.05, 5.0, 0.08
 """Base values: relative to the body's height, to its length, an angle, relative to its length."""
 PECTORAL_SWEEP_DEG, PECTORAL_DROOP_DEG, PECTORAL_PITCH_DEG = 45.0, 20.0, 20.0
 PELVIC_SWEEP_DEG, PELVIC_DROOP_DEG = 35.0, 60.0
+PADDLE: Ribs = ((-0.18, 0.35), (0.05, 0.42), (0.35, 0.70), (0.70, 1.00), (0.92, 0.80), (1.0, 0.45))
+BLADE: Ribs = ((-0.18, 0.80), (0.05, 1.00), (0.35, 0.78), (0.70, 0.48), (0.92, 0.24), (1.0, 0.10))
+"""Paired fins from root to tip: place and width, relative to the fin's length and width."""
 BEND_DEG = 8.0
 LABELS = {
     "body_length": ("Body length (without tail fin)", "m"),
@@ -43,6 +47,7 @@ LABELS = {
     "tail_height": ("Tail fin height", "m"),
     "tail_spread": ("Spread of the tail fin's end (relative)", None),
     "tail_fork": ("Tail fork depth (below 0: rounded)", "m"),
+    "tail_lobe": ("Rise of the tail fin's upper tip", "m"),
     "fin_thickness": ("Thickness of the fins (relative)", None),
     "dorsal_height": ("Dorsal fin height", "m"),
     "dorsal_sweep": ("Dorsal fin sweep", "m"),
@@ -163,6 +168,16 @@ def model_tail(recorder: Recorder, fish: Fish, length: float, heights: Sequence[
     fish.tail.fork(recorder, 0.2 * length, "tail_fork")
 
 
+def raise_tail(recorder: Recorder, fish: Fish, rise: float) -> None:
+    """Raise the upper tip of the tail fin above what mirrors the lower one; uses tail_lobe."""
+    assert fish.tail is not None
+    for section, share in ((-1, 1.0), (-2, 0.4)):
+        ring = fish.tail.loft.rings[section][0]
+        top = max(float(recorder.positions(v)[0, 2]) for v in ring)
+        tip = [Target((v,), "world") for v in ring if float(recorder.positions(v)[0, 2]) > top - 1e-6]
+        recorder.drag(tip, share * rise, height="tail_lobe")
+
+
 def shape_body(recorder: Recorder, fish: Fish) -> None:
     """Give the body its proportions, with its fins where they are of the whole.
 
@@ -208,13 +223,18 @@ def at_side(recorder: Recorder, fish: Fish, section: int, height: Literal["low",
 
 
 def model_side_fins(
-    recorder: Recorder, fish: Fish, anchors: Sequence[Target], length: float, width: float, name: str
+    recorder: Recorder,
+    fish: Fish,
+    anchors: Sequence[Target],
+    length: float,
+    width: float,
+    name: str,
+    shape: Ribs = PADDLE,
 ) -> Loft:
     """Model a pair of fins at the sides or the belly, ``name`` pectoral or pelvic.
 
     Uses its _length, _sweep and _droop; a pectoral fin's _width and _pitch too.
     """
-    shape = ((-0.18, 0.35), (0.05, 0.42), (0.35, 0.70), (0.70, 1.00), (0.92, 0.80), (1.0, 0.45))
     thin = fish.fin_thickness
     ribs = [Rib(at * length, -0.6 * w * width, 0.4 * w * width, thin * (1.0 if at < 0.9 else 0.6)) for at, w in shape]
     inside = (0.0, -0.06 * fish.width, 0.0)

@@ -1,0 +1,1 @@
+"""The procedural model ``fish_shark``: see build.py."""
