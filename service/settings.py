@@ -39,7 +39,7 @@ class ServiceSettings(StoreSettings):
     compiled_models: int = Field(default=16, ge=1)
     parallel_uploads: int = Field(default=2, ge=1)
     parallel_instances: int = Field(default=4, ge=1)
-    event_poll_s: float = Field(default=0.25, gt=0)
+    event_poll_s: float = Field(default=0.1, gt=0)
     event_ping_s: float = Field(default=15.0, gt=0)
     cors_origins: Annotated[tuple[str, ...], NoDecode] = ()
     dashboard_dir: Path = _DASHBOARD
