@@ -156,8 +156,11 @@ def size_fin(recorder: Recorder, fish: Fish, fins: Sequence[Loft], name: str, *,
             recorder.drag(Target((outer,), "world"), rho=SWEEP * fish.length, phi_deg=180.0, length=f"{name}_sweep")
 
 
-def model_tail(recorder: Recorder, fish: Fish, length: float, heights: Sequence[float]) -> None:
-    """Model the tail fin; uses tail_length, tail_height, tail_spread and tail_fork."""
+def model_tail(recorder: Recorder, fish: Fish, length: float, heights: Sequence[float], *, rise: float = 0.0) -> None:
+    """Model the tail fin; uses tail_length, tail_height, tail_spread and tail_fork.
+
+    With a rise its upper tip stands higher than what mirrors the lower one, which tail_lobe varies.
+    """
     root = Target(fish.body.rings[0][0], "world")
     inside = 0.05 * fish.length
     fish.tail = fan(recorder, "z", length, heights, fish.fin_thickness, offset=(inside, 0.0, 0.0), anchor=root)
@@ -166,16 +169,10 @@ def model_tail(recorder: Recorder, fish: Fish, length: float, heights: Sequence[
     recorder.scale(made.body(hinge=0), 1.0, "z", size="tail_height")
     recorder.scale(made.sections(len(heights) - 1), 1.0, "z", size="tail_spread")
     fish.tail.fork(recorder, 0.2 * length, "tail_fork")
-
-
-def raise_tail(recorder: Recorder, fish: Fish, rise: float) -> None:
-    """Raise the upper tip of the tail fin above what mirrors the lower one; uses tail_lobe."""
-    assert fish.tail is not None
-    for section, share in ((-1, 1.0), (-2, 0.4)):
-        ring = fish.tail.loft.rings[section][0]
-        top = max(float(recorder.positions(v)[0, 2]) for v in ring)
-        tip = [Target((v,), "world") for v in ring if float(recorder.positions(v)[0, 2]) > top - 1e-6]
-        recorder.drag(tip, share * rise, height="tail_lobe")
+    if rise:
+        for section, share in ((-1, 1.0), (-2, 0.4)):
+            tip = max(made.rings[section][0], key=lambda v: float(recorder.positions(v)[0, 2]))
+            recorder.drag(Target((tip,), "world"), share * rise, height="tail_lobe")
 
 
 def shape_body(recorder: Recorder, fish: Fish) -> None:

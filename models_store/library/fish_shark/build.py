@@ -24,7 +24,6 @@ from models_store.library.aids.fishes import (
     model_fin,
     model_side_fins,
     model_tail,
-    raise_tail,
     shape_body,
     size_fin,
     wholes,
@@ -63,8 +62,7 @@ def build() -> ProceduralModel:
     anal = model_fin(recorder, fish, ANAL, below=True)
     size_fin(recorder, fish, (dorsal,), "dorsal")
     size_fin(recorder, fish, (anal,), "anal", below=True)
-    model_tail(recorder, fish, TAIL_LENGTH, TAIL_HEIGHTS)
-    raise_tail(recorder, fish, TAIL_RISE)
+    model_tail(recorder, fish, TAIL_LENGTH, TAIL_HEIGHTS, rise=TAIL_RISE)
     shape_body(recorder, fish)
     model_side_fins(recorder, fish, at_side(recorder, fish, 5, "low"), *PECTORAL, "pectoral", BLADE)
     pelvic = model_side_fins(recorder, fish, at_side(recorder, fish, 3, "low"), *PELVIC, "pelvic", BLADE)
