@@ -10,7 +10,7 @@ import typer
 from cli.console import AsJson, print_json, shown_progress, stdout
 from cli.evaluation_options import Jobs, threads
 from cli.picture import save_picture
-from cli.sources import find_meshes, load_class
+from cli.sources import by_digest, find_meshes, load_class
 from models_store.library.shipped import list_classes
 from shapewright.errors import MeshError, MeshFileError
 
@@ -107,8 +107,7 @@ def classify(
 
 def _shipped(class_names: Sequence[str]) -> "dict[str, CompiledModel]":
     """The shipped models of these classes by their digests; a class of others is compared with its exemplars."""
-    shipping = [name for name in class_names if name in list_classes()]
-    return {compiled.model.digest: compiled for name in shipping for compiled in load_class(name)}
+    return by_digest(load_class(name) for name in class_names if name in list_classes())
 
 
 def _print(results: list[dict[str, Any]], skipped: dict[str, MeshFileError]) -> None:

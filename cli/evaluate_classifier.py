@@ -4,6 +4,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -22,7 +23,7 @@ from cli.evaluation_options import (
     threads,
 )
 from cli.learning import kept_classifier
-from cli.sources import load_class, load_classes, load_negatives, read_object
+from cli.sources import by_digest, load_class, load_classes, load_negatives, read_object
 from models_store.library.shipped import list_classes, list_further_classes
 from shapewright.errors import EvaluationError
 from shapewright.progress import PartialProgress, Progress
@@ -71,6 +72,23 @@ class Evaluated:
     training_s: float
     started_s: float
 
+    @cached_property
+    def classified(self) -> "dict[str, ClassificationFigures]":
+        """Figures of classification by every kind of evidence."""
+        from shapewright.evaluation.classification_figures import evidence_of, figures_by
+
+        return {name: figures_by(self.dataset, evidence) for name, evidence in evidence_of(self.dataset).items()}
+
+    @cached_property
+    def ranked(self) -> "dict[str, tuple[RetrievalFigures, Mapping[str, RetrievalFigures]]]":
+        """Figures of every ranking; none if there is nothing of the classes to be found."""
+        from shapewright.classification.evidence import OTHER
+        from shapewright.evaluation.classification_figures import rankings_of, retrieval_figures
+
+        if all(one.label == OTHER for one in self.dataset.judged):
+            return {}
+        return {name: retrieval_figures(self.dataset, scores) for name, scores in rankings_of(self.dataset).items()}
+
 
 def classification(
     dataset: DatasetFolder,
@@ -105,7 +123,7 @@ def classification(
 
     options = Options(dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache, baselines, fit)
     with _evaluated(options, report) as (done, progress):
-        figures = _classified(done.dataset)
+        figures = done.classified
         unknown = unknown_figures(done.dataset)
         _write_report(report, done, progress)
     judged = done.dataset.judged
@@ -172,7 +190,7 @@ def retrieval(
     """
     options = Options(dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache, baselines)
     with _evaluated(options, report) as (done, progress):
-        measured = _ranked(done.dataset)
+        measured = done.ranked
         if not measured:
             raise EvaluationError("the dataset has no mesh of a class that the classifier knows", where="--dataset")
         _write_report(report, done, progress)
@@ -271,17 +289,13 @@ def _evaluated(options: Options, report: Path | None) -> Iterator[tuple[Evaluate
             network,
             None if learned is None else {name: models[:1] for name, models in learned.items()},
             baselines=others,
-            fitted=_by_digest(learned or {}) if options.fit else None,
+            fitted=by_digest((learned or {}).values()) if options.fit else None,
             views=options.views,
             seed=options.seed,
             jobs=used,
             progress=PartialProgress(progress, _TRAINING_SHARE, 0.95),
         )
         yield Evaluated(dataset, network, training_s, started_s), PartialProgress(progress, 0.95, 1.0)
-
-
-def _by_digest(classes: "Mapping[str, Sequence[CompiledModel]]") -> "dict[str, CompiledModel]":
-    return {compiled.model.digest: compiled for models in classes.values() for compiled in models}
 
 
 def _shipped(class_names: Sequence[str]) -> "Mapping[str, Sequence[CompiledModel]] | None":
@@ -339,21 +353,6 @@ def _common(options: Options, done: Evaluated, report: Path | None) -> dict[str,
     }
 
 
-def _classified(dataset: "JudgedDataset") -> "dict[str, ClassificationFigures]":
-    from shapewright.evaluation.classification_figures import evidence_of, figures_by
-
-    return {name: figures_by(dataset, evidence) for name, evidence in evidence_of(dataset).items()}
-
-
-def _ranked(dataset: "JudgedDataset") -> "dict[str, tuple[RetrievalFigures, Mapping[str, RetrievalFigures]]]":
-    """Figures of every ranking; none if there is nothing of the classes to be found."""
-    from shapewright.evaluation.classification_figures import rankings_of, retrieval_figures
-
-    if all(one.label == "other" for one in dataset.judged):
-        return {}
-    return {name: retrieval_figures(dataset, scores) for name, scores in rankings_of(dataset).items()}
-
-
 def _write_report(report: Path | None, done: Evaluated, progress: Progress) -> None:
     if report is None:
         return
@@ -362,8 +361,8 @@ def _write_report(report: Path | None, done: Evaluated, progress: Progress) -> N
     page = classifier_report(
         done.dataset,
         _TITLES,
-        figures={name: one.to_dict() for name, one in _classified(done.dataset).items()},
-        curves={name: mean.to_dict() for name, (mean, _) in _ranked(done.dataset).items()},
+        figures={name: one.to_dict() for name, one in done.classified.items()},
+        curves={name: mean.to_dict() for name, (mean, _) in done.ranked.items()},
         progress=progress,
     )
     report.parent.mkdir(parents=True, exist_ok=True)

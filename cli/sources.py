@@ -60,6 +60,11 @@ def load_class(class_name: str) -> "list[CompiledModel]":
     return [load_compiled(name) for name in classes[class_name]]
 
 
+def by_digest(groups: "Iterable[Iterable[CompiledModel]]") -> "dict[str, CompiledModel]":
+    """Compiled models by the digests of their models, as fits ask for them."""
+    return {compiled.model.digest: compiled for group in groups for compiled in group}
+
+
 def load_classes(sources: list[str] | None) -> "dict[str, list[CompiledModel]]":
     """Load models by class: of every class named, and each model or file named.
 

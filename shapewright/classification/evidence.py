@@ -20,8 +20,6 @@ FLOOR: Final = 1e-3
 """No single source of evidence rules a class out."""
 KNOWN_THRESHOLD: Final = 0.5
 """A mesh whose ``known`` is below is answered with ``unknown``."""
-
-
 UNKNOWN: Final = "unknown"
 """The answer for a mesh of none of the classes."""
 OTHER: Final = "other"
