@@ -18,7 +18,7 @@ from models_store.library.shipped import load_shipped
 from shapewright.distances.alignment import Pose, rotations_24
 from shapewright.estimation import EstimationSettings, estimate
 from shapewright.mesh import TriangleMesh
-from shapewright.mesh_file import load_mesh
+from shapewright.mesh.file import load_mesh
 from shapewright.modeling import CompiledModel, ProceduralModel
 from shapewright.progress import CallbackProgress
 

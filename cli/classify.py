@@ -56,7 +56,7 @@ def classify(
     import numpy as np
 
     from shapewright.classification import load_classifier
-    from shapewright.mesh_file import load_meshes
+    from shapewright.mesh.file import load_meshes
     from shapewright.rendering import compose_grid
 
     files = find_meshes(sources)

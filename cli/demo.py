@@ -141,7 +141,7 @@ def _negatives_of(classes: list[str] | None) -> list[str]:
 
 def _refuse_early(query: Path) -> None:
     """A mesh that the service will refuse is told about before a classifier is trained."""
-    from shapewright.mesh_file import load_mesh
+    from shapewright.mesh.file import load_mesh
 
     load_mesh(query, in_child=True)
 
@@ -278,7 +278,7 @@ def _write_files(client: "Client", mesh_id: str, estimation: Any, output: Path, 
     import numpy as np
 
     from cli.picture import save_side_by_side
-    from shapewright.mesh_file import load_mesh
+    from shapewright.mesh.file import load_mesh
 
     glb, picture = output / f"{name}-fitted.glb", output / f"{name}.png"
     glb.write_bytes(client.get_bytes(f"/v1/estimations/{estimation['id']}/mesh"))

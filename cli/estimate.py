@@ -67,7 +67,7 @@ def estimate(
         raise typer.BadParameter("name models or a class", param_hint="--model")
     from shapewright.estimation import EstimationSettings, estimate_class
     from shapewright.estimation import estimate as run_estimation
-    from shapewright.mesh_file import load_mesh
+    from shapewright.mesh.file import load_mesh
 
     generators = load_class(class_name) if class_name is not None else [load_compiled(model) for model in models or []]
     query = load_mesh(mesh, in_child=True)

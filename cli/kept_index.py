@@ -102,7 +102,7 @@ def _kept(path: Path, classifier: "MeshClassifier", classifier_digest: str, *, s
 
 
 def _read(files: "dict[str, Path]", jobs: int) -> "Iterator[tuple[str, TriangleMesh | str]]":
-    from shapewright.mesh_file import load_meshes
+    from shapewright.mesh.file import load_meshes
 
     for digest, mesh in zip(files, load_meshes(list(files.values()), jobs=jobs), strict=True):
         yield digest, mesh.message if isinstance(mesh, MeshFileError) else mesh

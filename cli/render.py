@@ -99,7 +99,7 @@ def _is_model(source: str) -> bool:
 
 
 def _mesh(source: str, assignments: list[str] | None) -> "TriangleMesh":
-    from shapewright.mesh_file import load_mesh
+    from shapewright.mesh.file import load_mesh
 
     if not _is_model(source):
         if assignments:

@@ -219,7 +219,7 @@ def _first_reason(indexed: IndexedFiles, files: list[Path]) -> str:
 
 def _draw(sheet: Path, shown: "list[RankedMesh]", mesh: Path | None, wanted: str) -> None:
     from cli.picture import save_picture
-    from shapewright.mesh_file import MeshReader, load_mesh
+    from shapewright.mesh.file import MeshReader, load_mesh
     from shapewright.rendering import LabelledMesh, compose_mesh_sheet
 
     with MeshReader() as reader:

@@ -92,7 +92,7 @@ def find_meshes(sources: Iterable[Path]) -> list[Path]:
     Raises:
         MeshFileError: a source is not there, or a folder holds none.
     """
-    from shapewright.mesh_sniff import READABLE_TYPES
+    from shapewright.mesh.sniff import READABLE_TYPES
 
     found: dict[Path, None] = {}
     for source in sources:

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from shapewright.errors import MeshError, ModelError
-from shapewright.glb import GlbWriter
+from shapewright.mesh.glb import GlbWriter
 from shapewright.modeling import CompiledModel, ProceduralModel
 
 _LARGEST: Final = np.finfo(np.float32).max

@@ -18,7 +18,7 @@ from service.compiled_models import CompiledModels
 from service.errors import Problem, ProblemError
 from service.metrics import JobCounts, Metrics
 from service.settings import ServiceSettings
-from shapewright.mesh_file import MeshReader
+from shapewright.mesh.file import MeshReader
 
 log = structlog.stdlib.get_logger("shapewright.service")
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from shapewright.errors import Cancelled, ShapewrightError
     from shapewright.estimation import ClassEstimation, Estimation, EstimationSettings, estimate, estimate_class
     from shapewright.mesh import TriangleMesh
-    from shapewright.mesh_file import load_mesh, parse_mesh
+    from shapewright.mesh.file import load_mesh, parse_mesh
     from shapewright.modeling import CompiledModel, Parameter, ProceduralModel, Recorder
     from shapewright.rendering import render_images, render_mesh
 
@@ -38,8 +38,8 @@ _HOMES = {
     "TriangleMesh": "mesh",
     "estimate": "estimation",
     "estimate_class": "estimation",
-    "load_mesh": "mesh_file",
-    "parse_mesh": "mesh_file",
+    "load_mesh": "mesh.file",
+    "parse_mesh": "mesh.file",
     "render_images": "rendering",
     "render_mesh": "rendering",
     "train_classifier": "classification",

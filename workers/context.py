@@ -22,7 +22,7 @@ from workers.stopping import StopNotice, WorkerStopping
 
 if TYPE_CHECKING:
     from shapewright.mesh import TriangleMesh
-    from shapewright.mesh_file import MeshReader
+    from shapewright.mesh.file import MeshReader
     from shapewright.modeling import ProceduralModel
 
 log = structlog.get_logger(__name__)
@@ -164,7 +164,7 @@ class JobContext:
 
     def load_query(self, mesh_id: str) -> "TriangleMesh":
         """Read an uploaded mesh, from the original bytes: the stored GLB has rounded coordinates."""
-        from shapewright.mesh_file import parse_mesh
+        from shapewright.mesh.file import parse_mesh
 
         with self.database.reading() as session:
             row = catalog.get_mesh(session, mesh_id)

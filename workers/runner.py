@@ -18,7 +18,7 @@ from models_store.job_kinds import JobState
 from models_store.jobs import get_job
 from models_store.session import OUTAGES, Database
 from shapewright.errors import Cancelled, ShapewrightError
-from shapewright.mesh_file import MeshReader
+from shapewright.mesh.file import MeshReader
 from workers.context import JobContext, Outcome, WorkerProgress, utc_now
 from workers.settings import WorkerSettings
 from workers.stopping import GivingWay, StopNotice, WorkerStopping

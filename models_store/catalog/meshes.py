@@ -46,7 +46,7 @@ def store_mesh(
         data: the file as it was uploaded.
         file_name: its name at the uploader's.
         file_type: ``obj``, ``off``, ``ply``, ``stl``, ``glb`` or ``gltf``.
-        mesh: what :func:`shapewright.mesh_file.parse_mesh` read from it.
+        mesh: what :func:`shapewright.mesh.file.parse_mesh` read from it.
         now: the time, with a zone.
 
     Raises:

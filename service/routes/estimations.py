@@ -12,7 +12,7 @@ from service.errors import Problem, ProblemError, reference_error
 from service.routes import NOT_MODIFIED, binary, problems
 from service.schemas.estimations import EstimationIn, EstimationOut, EstimationPageOut
 from service.schemas.jobs import AcceptedOut
-from shapewright import glb
+from shapewright.mesh import glb
 
 router = APIRouter(prefix="/v1/estimations", tags=["estimations"])
 

@@ -15,9 +15,9 @@ from service.dependencies import CursorQuery, IdPath, LimitQuery, Services, Serv
 from service.errors import Problem, ProblemError
 from service.routes import NOT_MODIFIED, binary, problems
 from service.schemas.meshes import MeshOut, MeshPageOut
-from shapewright import glb
-from shapewright.mesh_file import ReadLimits, parse_mesh
-from shapewright.mesh_sniff import READABLE_TYPES
+from shapewright.mesh import glb
+from shapewright.mesh.file import ReadLimits, parse_mesh
+from shapewright.mesh.sniff import READABLE_TYPES
 
 router = APIRouter(prefix="/v1/meshes", tags=["meshes"])
 

@@ -13,7 +13,7 @@ from typing import Final
 
 from shapewright.errors import EvaluationError, MeshFileError
 from shapewright.mesh import TriangleMesh
-from shapewright.mesh_file import load_meshes
+from shapewright.mesh.file import load_meshes
 
 LABELS: Final = "labels.csv"
 
@@ -94,7 +94,7 @@ def spread(items: Sequence[LabelledFile], limit: int | None) -> tuple[LabelledFi
 
 
 def load_each(items: Sequence[LabelledFile], *, jobs: int = 1) -> Iterator[tuple[LabelledFile, TriangleMesh | Skipped]]:
-    """Read meshes in child processes with limits; see :func:`shapewright.mesh_file.load_meshes`."""
+    """Read meshes in child processes with limits; see :func:`shapewright.mesh.file.load_meshes`."""
     for item, read in zip(items, load_meshes([item.path for item in items], jobs=jobs), strict=True):
         yield item, Skipped(item.file, read.message) if isinstance(read, MeshFileError) else read
 

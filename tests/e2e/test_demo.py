@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from shapewright.mesh_file import load_mesh
+from shapewright.mesh.file import load_mesh
 
 FEW = ("--variations", "16", "--images", "4", "--samples", "40")
 

@@ -16,7 +16,7 @@ from services import free_port, logged_process
 
 from cli.client import Client, connected
 from shapewright.mesh import TriangleMesh
-from shapewright.mesh_file import parse_mesh
+from shapewright.mesh.file import parse_mesh
 
 if TYPE_CHECKING:
     from shapewright.modeling import ProceduralModel

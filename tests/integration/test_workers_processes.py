@@ -17,7 +17,7 @@ from worker_support import Site, brick, children_of, is_alive, now, rod
 from models_store import catalog
 from models_store.broker import send_wakeup
 from models_store.jobs import JobState, list_jobs, request_cancel
-from shapewright.mesh_file import parse_mesh
+from shapewright.mesh.file import parse_mesh
 
 KINDS = ["embedded", pytest.param("production", marks=pytest.mark.services)]
 

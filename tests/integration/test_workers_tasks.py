@@ -23,7 +23,7 @@ from models_store.parts import part_states
 from models_store.tables import ClassifierRow
 from shapewright.classification.exemplars import Exemplars
 from shapewright.estimation import EstimationSettings, PanoramaBank, estimate
-from shapewright.mesh_file import parse_mesh
+from shapewright.mesh.file import parse_mesh
 from shapewright.modeling import ProceduralModel, Recorder
 from workers.array_store import ArtifactArrays
 from workers.runner import Runner

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shapewright.classification import Classifier, TrainingSettings, train_classifier
-from shapewright.mesh_file import load_mesh
+from shapewright.mesh.file import load_mesh
 
 QUERIES = {"m495.off": "glass_with_stem", "m872.off": "table", "m707.off": "sword"}
 

@@ -8,7 +8,7 @@ import pytest
 from chair_model import armchair
 from command_line import shapewright, write_lamp_model
 
-from shapewright.mesh_file import load_mesh
+from shapewright.mesh.file import load_mesh
 
 
 @pytest.fixture

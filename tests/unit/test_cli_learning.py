@@ -10,7 +10,7 @@ from PIL import Image
 
 from cli.sources import load_class, load_classes, load_negatives
 from models_store.library.shipped import list_classes, list_further_classes
-from shapewright.mesh_file import load_mesh
+from shapewright.mesh.file import load_mesh
 from shapewright.modeling import Recorder
 
 

@@ -18,7 +18,7 @@ from shapewright.distances.panorama import (
     panorama_distances,
 )
 from shapewright.errors import MeshError
-from shapewright.mesh_file import load_mesh
+from shapewright.mesh.file import load_mesh
 
 ROTATION_TOLERANCE = 1e-3
 """What a rotation may change, in a distance that lies in [0, 2] and is 0.3 and more between kinds of objects."""

@@ -19,7 +19,7 @@ from shapewright.evaluation.descriptor_cache import BankRequest, DescriptorCache
 from shapewright.evaluation.metrics import coverage_of_classes
 from shapewright.evaluation.report import coverage_report
 from shapewright.evaluation.turned_alike import rotation_like
-from shapewright.mesh_file import load_mesh
+from shapewright.mesh.file import load_mesh
 from shapewright.modeling import CompiledModel
 from shapewright.progress import CallbackProgress
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from shapewright.mesh_file import load_mesh
+from shapewright.mesh.file import load_mesh
 
 
 def test_the_script_reproduces_the_committed_mesh(repository: Path, tmp_path: Path) -> None:

@@ -18,9 +18,9 @@ from hypothesis import strategies as st
 
 from shapewright.errors import MeshFileError
 from shapewright.mesh import TriangleMesh
-from shapewright.mesh_decode import decode_mesh
-from shapewright.mesh_file import DEFAULT_LIMITS, MeshReader, load_mesh, parse_mesh
-from shapewright.mesh_sniff import READABLE_TYPES, check_content
+from shapewright.mesh.decode import decode_mesh
+from shapewright.mesh.file import DEFAULT_LIMITS, MeshReader, load_mesh, parse_mesh
+from shapewright.mesh.sniff import READABLE_TYPES, check_content
 
 BALL = TriangleMesh.from_trimesh(trimesh.creation.icosphere(2)).cleaned()
 WRITTEN = {name: BALL.to_bytes(name) for name in ("glb", "obj", "off", "ply", "stl")}
@@ -235,9 +235,9 @@ def test_a_bomb_of_instances_stops_at_a_limit():
 
 def test_the_child_cannot_open_anything_once_it_reads():
     program = """
-from shapewright import mesh_decode, mesh_reader_process
-mesh_decode.decode_mesh = lambda *_: open("/etc/hostname")
-mesh_reader_process.main()
+from shapewright.mesh import decode as reading, reader_process
+reading.decode_mesh = lambda *_: open("/etc/hostname")
+reader_process.main()
 """
     request = {"file_type": "obj", "limits": vars(DEFAULT_LIMITS), "size": len(WRITTEN["obj"])}
     child = subprocess.run(
@@ -271,7 +271,7 @@ def test_one_reader_reads_many_files_and_outlives_bad_ones():
 def test_a_hijacked_child_finds_no_other_file_and_answers_no_more_than_it_may():
     program = """
 import sys
-from shapewright import mesh_decode, mesh_reader_process
+from shapewright.mesh import decode as reading, reader_process
 
 class Huge:
     def __len__(self): return 1
@@ -284,10 +284,10 @@ def decode(data, *_):
     while frame is not None:
         found |= {one for one in frame.f_locals.values() if isinstance(one, bytes) and b"triangle" in one}
         frame = frame.f_back
-    raise mesh_decode.MeshFileError(str(found))
+    raise reading.MeshFileError(str(found))
 
-mesh_decode.decode_mesh = decode
-mesh_reader_process.main()
+reading.decode_mesh = decode
+reader_process.main()
 """
     limits = vars(replace(DEFAULT_LIMITS, vertices=1000, faces=1000))
     requests = b""

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from shapewright.errors import MeshError
 from shapewright.mesh import TriangleMesh
-from shapewright.mesh_file import load_mesh
+from shapewright.mesh.file import load_mesh
 
 
 def box(size=(1.0, 2.0, 3.0)):

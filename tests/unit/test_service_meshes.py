@@ -11,7 +11,7 @@ from service_support import GLB, LiveService, problem, running, service, shared_
 
 from models_store.catalog import mesh_id
 from shapewright.mesh import TriangleMesh
-from shapewright.mesh_file import parse_mesh
+from shapewright.mesh.file import parse_mesh
 
 __all__ = ["service", "shared_service"]
 

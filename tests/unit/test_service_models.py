@@ -16,7 +16,7 @@ from service_support import GLB, LiveService, box, problem, running, service, sh
 from models_store import catalog
 from service.compiled_models import CompiledModels, InstanceGenerator
 from shapewright.mesh import TriangleMesh
-from shapewright.mesh_file import parse_mesh
+from shapewright.mesh.file import parse_mesh
 from shapewright.modeling import ProceduralModel
 
 __all__ = ["service", "shared_service"]

@@ -19,7 +19,7 @@ from service_support import (
 
 from models_store import catalog
 from models_store.broker import QUEUE
-from shapewright.mesh_file import parse_mesh
+from shapewright.mesh.file import parse_mesh
 
 __all__ = ["service", "shared_service"]
 

@@ -14,7 +14,7 @@ from models_store.jobs import JobKind, JobState
 from models_store.session import Database
 from models_store.tables import CollectionRow
 from shapewright.mesh import TriangleMesh
-from shapewright.mesh_file import parse_mesh
+from shapewright.mesh.file import parse_mesh
 
 NOTHING = "0" * 64
 SETTINGS: dict[str, Any] = {"evidence": "combined", "limit": 5, "instances": 10, "seed": 0}

@@ -14,7 +14,7 @@ import numpy as np
 
 from shapewright.errors import MeshError, MeshFileError
 from shapewright.mesh import TriangleMesh
-from shapewright.mesh_decode import ReadLimits
+from shapewright.mesh.decode import ReadLimits
 
 _WHERE = "reader process"
 
@@ -49,10 +49,10 @@ class MeshReader:
             process.end()
 
     def parse(self, data: bytes, file_type: str, limits: ReadLimits) -> TriangleMesh:
-        """Read checked content of a normalised type; see :func:`shapewright.mesh_file.parse_mesh`.
+        """Read checked content of a normalised type; see :func:`shapewright.mesh.file.parse_mesh`.
 
         Raises:
-            MeshFileError: as :func:`shapewright.mesh_decode.decode_mesh`, or the child ran out of memory or time.
+            MeshFileError: as :func:`shapewright.mesh.decode.decode_mesh`, or the child ran out of memory or time.
         """
         request = {"file_type": file_type, "limits": vars(limits)}
         process = self._waiting()
@@ -88,7 +88,7 @@ class ReaderLostError(MeshFileError):
 
 
 class _Process:
-    """A running :mod:`shapewright.mesh_reader_process`, for one file at a time."""
+    """A running :mod:`shapewright.mesh.reader_process`, for one file at a time."""
 
     def __init__(self) -> None:
         # the environment is made anew: no secrets of ours, and one thread, as each reserves address space
@@ -100,7 +100,7 @@ class _Process:
             "MKL_NUM_THREADS": "1",
         }
         self._popen = subprocess.Popen(
-            [sys.executable, "-P", "-s", "-B", "-m", "shapewright.mesh_reader_process"],
+            [sys.executable, "-P", "-s", "-B", "-m", "shapewright.mesh.reader_process"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

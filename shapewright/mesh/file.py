@@ -16,9 +16,9 @@ from typing import Final
 
 from shapewright.errors import MeshError, MeshFileError
 from shapewright.mesh import TriangleMesh
-from shapewright.mesh_decode import ReadLimits, decode_mesh
-from shapewright.mesh_reader import MeshReader
-from shapewright.mesh_sniff import check_content, normalized_type
+from shapewright.mesh.decode import ReadLimits, decode_mesh
+from shapewright.mesh.reader import MeshReader
+from shapewright.mesh.sniff import check_content, normalized_type
 
 __all__ = ["DEFAULT_LIMITS", "MeshReader", "ReadLimits", "load_mesh", "load_meshes", "parse_mesh"]
 

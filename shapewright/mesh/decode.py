@@ -1,6 +1,6 @@
 """From the bytes of a file to a clean triangle mesh, in this very process.
 
-Strangers' files go through :func:`shapewright.mesh_file.parse_mesh`, which runs this in a child process.
+Strangers' files go through :func:`shapewright.mesh.file.parse_mesh`, which runs this in a child process.
 """
 
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ import numpy as np
 
 from shapewright.errors import MeshError, MeshFileError
 from shapewright.mesh import TriangleMesh
-from shapewright.mesh_text import Arrays, read_obj, read_off, read_stl
+from shapewright.mesh.text import Arrays, read_obj, read_off, read_stl
 
 FEWEST_FACES = 4
 """A tetrahedron; less is no solid object."""
@@ -22,7 +22,7 @@ LARGEST_COORDINATE = 1e15
 class ReadLimits:
     """How much a file may cost; beyond any of them it is refused.
 
-    The last three hold only in a child process (:func:`shapewright.mesh_file.parse_mesh`).
+    The last three hold only in a child process (:func:`shapewright.mesh.file.parse_mesh`).
     """
 
     size_bytes: int = 64 * 2**20

@@ -1,4 +1,4 @@
-"""The process behind :class:`shapewright.mesh_reader.MeshReader`: ``python -m shapewright.mesh_reader_process``.
+"""The process behind :class:`shapewright.mesh.reader.MeshReader`: ``python -m shapewright.mesh.reader_process``.
 
 It has imported what reading takes, looks at no content itself, and forks a child for each file. The child limits
 itself, can open no file and no connection, as no further descriptor is allowed, finds nothing of other files in its
@@ -16,8 +16,8 @@ import sys
 import traceback
 from typing import Any, BinaryIO, Final
 
-from shapewright import mesh_decode
 from shapewright.errors import MeshFileError
+from shapewright.mesh import decode
 
 _LONGEST_HEADER: Final = 1 << 16
 _PR_SET_DUMPABLE: Final = 4
@@ -80,7 +80,7 @@ def _answer(file_type: str, limits: dict[str, Any], data: bytes, sink: BinaryIO)
 
 def _parse(file_type: str, limits: dict[str, Any], data: bytes) -> tuple[dict[str, object], list[bytes]]:
     try:
-        mesh = mesh_decode.decode_mesh(data, file_type, mesh_decode.ReadLimits(**limits))
+        mesh = decode.decode_mesh(data, file_type, decode.ReadLimits(**limits))
     except MeshFileError as error:
         return {"error": error.message, "where": error.where}, []
     counts: dict[str, object] = {"vertices": len(mesh.vertices), "faces": len(mesh.faces)}

@@ -1,7 +1,7 @@
 """Triangle meshes: the value that queries, instances and fitted meshes are passed around as.
 
 Polygon soup is normal here: nothing asks for a closed, oriented or manifold mesh. Reading files is in
-:mod:`shapewright.mesh_file`.
+:mod:`shapewright.mesh.file`.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from shapewright.errors import MeshError
-from shapewright.glb import GlbWriter
+from shapewright.mesh.glb import GlbWriter
 from shapewright.whole_file import write_whole
 
 WRITABLE_TYPES = ("glb", "obj", "off", "ply", "stl")
