@@ -31,8 +31,8 @@ class ReferenceEstimator:
     is better (ours).
 
     Args:
-        banks: finds the bank of a model; without it each is built when its turn comes. None is kept after its scan, as a
-            bank may be large.
+        banks: finds the bank of a model; without it each is built when its turn comes. None is kept after its scan, as
+            a bank may be large.
     """
 
     def __init__(self, banks: BankOf | None = None) -> None:
