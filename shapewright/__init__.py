@@ -15,29 +15,29 @@ if TYPE_CHECKING:
         train_classifier,
     )
     from shapewright.errors import Cancelled, ShapewrightError
-    from shapewright.estimation import ClassEstimation, Estimation, EstimationSettings, estimate, estimate_class
+    from shapewright.estimation import Estimation, EstimationSettings, Query, estimate
     from shapewright.mesh import TriangleMesh
     from shapewright.mesh.file import load_mesh, parse_mesh
-    from shapewright.modeling import CompiledModel, Parameter, ProceduralModel, Recorder
+    from shapewright.modeling import CompiledModel, Parameter, ProceduralModel, Recorder, compile_model
     from shapewright.rendering import render_images, render_mesh
 
 _HOMES = {
     "Cancelled": "errors",
     "Classification": "classification",
-    "ClassEstimation": "estimation",
     "Classifier": "classification",
     "CompiledModel": "modeling",
     "Estimation": "estimation",
     "EstimationSettings": "estimation",
     "Parameter": "modeling",
     "ProceduralModel": "modeling",
+    "Query": "estimation",
     "Recorder": "modeling",
     "ShapewrightError": "errors",
     "TrainedClassifier": "classification",
     "TrainingSettings": "classification",
     "TriangleMesh": "mesh",
+    "compile_model": "modeling",
     "estimate": "estimation",
-    "estimate_class": "estimation",
     "load_mesh": "mesh.file",
     "parse_mesh": "mesh.file",
     "render_images": "rendering",
@@ -47,7 +47,6 @@ _HOMES = {
 
 __all__ = [
     "Cancelled",
-    "ClassEstimation",
     "Classification",
     "Classifier",
     "CompiledModel",
@@ -55,13 +54,14 @@ __all__ = [
     "EstimationSettings",
     "Parameter",
     "ProceduralModel",
+    "Query",
     "Recorder",
     "ShapewrightError",
     "TrainedClassifier",
     "TrainingSettings",
     "TriangleMesh",
+    "compile_model",
     "estimate",
-    "estimate_class",
     "load_mesh",
     "parse_mesh",
     "render_images",

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float, Int
 
-from shapewright.distances.triangles import TriangleDistance
 from shapewright.errors import EstimationError
 from shapewright.mesh import TriangleMesh
 
@@ -103,6 +102,8 @@ def measure_residuals(
         EstimationError: the tolerance is not positive, or the regions do not fit the vertices or names.
         MeshError: one of the surfaces has no area, or the query no extent.
     """
+    from shapewright.distances.triangles import TriangleDistance  # compiled kernels: only when needed
+
     if not tolerance > 0:
         raise EstimationError(f"expected a positive tolerance, got {tolerance}", where="tolerance")
     if regions is not None and len(regions) != len(fit.vertices):

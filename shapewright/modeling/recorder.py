@@ -12,6 +12,7 @@ import numpy as np
 from jaxtyping import Float
 
 from shapewright.errors import ModelError
+from shapewright.modeling.compiled import compile_model
 from shapewright.modeling.component import Component
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.declarations import Declarations
@@ -48,12 +49,16 @@ class Recorder(Declarations):
     not exist or an impossible change.
     """
 
-    def __init__(self, name: str, class_name: str, *, description: str = "", closed: bool = True) -> None:
+    def __init__(
+        self, name: str, class_name: str, *, description: str = "", closed: bool = True, unit_m: float | None = None
+    ) -> None:
+        """Begin an empty object; see :class:`ProceduralModel` for the arguments."""
         super().__init__()
         self.name = name
         self.class_name = class_name
         self.description = description
         self.closed = closed
+        self.unit_m = unit_m
         self.mesh = ControlMesh()
         self._positions: Float[np.ndarray, "V 3 1"] = np.zeros((0, 3, 1))
         self._operations: list[Operation] = []
@@ -277,8 +282,9 @@ class Recorder(Declarations):
             self.closed,
             tuple(self._parts),
             self._symmetry,
+            self.unit_m,
         )
-        model.compile()
+        compile_model(model)
         return model
 
     # ------------------------------------------------------------------ inside
