@@ -8,9 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from shapewright.distances.alignment import Pose
-from shapewright.estimation.findings import Alternative
 from shapewright.estimation.generator import ModelInfo
-from shapewright.estimation.result import Distances, ParameterEstimate
+from shapewright.estimation.result import Alternative, Distances, ParameterEstimate
 from shapewright.estimation.turns import find_turn
 from shapewright.modeling.symmetry import NO_SYMMETRY, Symmetry
 

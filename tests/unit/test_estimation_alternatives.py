@@ -1,9 +1,10 @@
 """Other answers: which count, which are the same up to symmetry, and what they are called."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from chair_model import armchair
 from scipy.spatial.transform import Rotation
 
 from shapewright.distances.alignment import Pose
@@ -11,13 +12,6 @@ from shapewright.estimation.alternatives import Contender, list_alternatives
 from shapewright.estimation.result import Distances, ParameterEstimate
 from shapewright.estimation.turns import find_turn
 from shapewright.modeling.symmetry import NO_SYMMETRY, Symmetry
-
-
-@dataclass(frozen=True)
-class Model:
-    name: str
-    digest: str
-    parameters: tuple = ()
 
 
 def choice(label, option, active=True):
@@ -30,7 +24,7 @@ def turned(axis, angle_deg):
 
 def contender(zbuffer=0.1, *, pose=None, options=(), model="helicopter", symmetry=NO_SYMMETRY):
     return Contender(
-        model=Model(model, f"digest of {model}"),
+        model=replace(armchair(), name=model),
         values=np.ones(len(options)),
         parameters=tuple(options),
         pose=pose or Pose(),

@@ -9,7 +9,7 @@ from surface_jacobian import linearized
 from shapewright.errors import EstimationError
 from shapewright.estimation.determination.determine import RESIDUAL_FLOOR, determine
 from shapewright.estimation.determination.information import N_POSE, Information, pose_columns
-from shapewright.modeling import Recorder, group
+from shapewright.modeling import Recorder, compile_model, group
 
 RESIDUAL = 1e-3
 
@@ -18,7 +18,7 @@ def boxes(build):
     """A compiled model that ``build`` records."""
     recorder = Recorder("boxes", "block")
     build(recorder)
-    return recorder.build().compile()
+    return compile_model(recorder.build())
 
 
 def three_lengths(recorder):
@@ -107,7 +107,7 @@ def test_a_sum_is_determined_though_its_members_are_not():
 
 
 def test_options_and_what_is_inactive_have_no_interval(library_models):
-    compiled = library_models["table"].compile()
+    compiled = compile_model(library_models["table"])
     values = compiled.values_from_mapping({"apron": 3})
     linear = linearized(compiled, values)
     found = judged(linear)
@@ -147,8 +147,20 @@ def test_intervals_grow_with_residual_and_factor_down_to_a_floor():
     assert floor == pytest.approx(one * RESIDUAL_FLOOR / RESIDUAL)
 
 
+def test_a_model_without_parameters_has_nothing_to_judge():
+    found = judged(linearized(boxes(lambda recorder: recorder.box(1.0, 2.0, 3.0)), []))
+    assert (found.statuses, found.intervals, found.ratios, found.combinations) == ((), (), (), ())
+
+
+def test_a_large_residual_leaves_nothing_determined():
+    linear = linearized(boxes(three_lengths), [1.0, 1.0, 1.0])
+    far = judged(linear, scale_known=True, mean_residual=1.0)
+    assert far.statuses == ("not_determined",) * 3
+    assert not far.ratios
+
+
 def test_what_is_known_of_the_pose_only_adds(library_models):
-    compiled = library_models["glass_with_stem"].compile()
+    compiled = compile_model(library_models["glass_with_stem"])
     linear = linearized(compiled, compiled.random_values(np.random.default_rng(0), 1)[0])
     free, known = judged(linear).information, judged(linear, scale_known=True).information
     pose_known = linear.jacobian.copy()

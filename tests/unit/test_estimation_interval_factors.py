@@ -7,6 +7,7 @@ from surface_jacobian import linearized
 from shapewright.errors import EstimationError
 from shapewright.estimation.determination.determine import determine
 from shapewright.estimation.determination.factors import IntervalFactors, conformal_factor, write_factors
+from shapewright.modeling import compile_model
 
 
 def test_the_factor_covers_what_it_says_whatever_the_errors_are():
@@ -34,7 +35,7 @@ def test_the_rank_counts_the_query_to_come():
 @pytest.mark.parametrize("scale_known", [True, False])
 def test_intervals_cover_the_truth_of_fits_to_noisy_surfaces(library_models, scale_known):
     """Least squares on one linearized model with Gaussian noise on the points; the factor is fitted on other noise."""
-    compiled = library_models["office_chair"].compile()
+    compiled = compile_model(library_models["office_chair"])
     linear = linearized(compiled, compiled.random_values(np.random.default_rng(3), 1)[0], points=600)
     rng = np.random.default_rng(0)
     jacobian = linear.jacobian[:, :-1] if scale_known else linear.jacobian

@@ -7,9 +7,9 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from shapewright.estimation.determination.information import Information
-from shapewright.estimation.determination.statuses import exceeds_least_effect
-from shapewright.estimation.findings import Combination
+from shapewright.estimation.determination.statuses import is_determined
 from shapewright.estimation.generator import ParameterInfo
+from shapewright.estimation.result import Combination
 
 MOST_MEMBERS: Final = 3
 """A sum of more values says nothing to people."""
@@ -25,9 +25,9 @@ def find_combinations(
 ) -> tuple[Combination, ...]:
     """Return sums of a few undetermined parameters that are determined, if need be up to the scale.
 
-    Members have one unit: a length and an angle have no sum. The determined directions among the undetermined parameters
-    of a unit are those with large eigenvalues of their information, all else refitted; a reduced basis of them has few
-    members each.
+    Members have one unit: a length and an angle have no sum. The determined directions among the undetermined
+    parameters of a unit are those with large eigenvalues of their information, all else refitted; a reduced basis of
+    them has few members each.
 
     Args:
         information: about the parameters in this order.
@@ -51,14 +51,14 @@ def _of_group(
 ) -> list[Combination]:
     covariance = known.covariance[np.ix_(columns, columns)]
     strengths, directions = np.linalg.eigh(known.schur_complement(columns))
-    basis = directions[:, exceeds_least_effect(np.sqrt(np.maximum(strengths, 0.0)))].T
+    basis = directions[:, is_determined(np.sqrt(np.maximum(strengths, 0.0)), deviation)].T
     found = []
     for row in _reduced(basis):
         weights = np.where(np.abs(row) >= LEAST_WEIGHT * np.abs(row).max(), row, 0.0)
         members = np.flatnonzero(weights)
         spread = float(np.sqrt(weights @ covariance @ weights))
         extent = float(np.abs(weights).sum())
-        if 2 <= len(members) <= MOST_MEMBERS and exceeds_least_effect(np.array([extent / spread]))[0]:
+        if 2 <= len(members) <= MOST_MEMBERS and is_determined(np.array([extent / spread]), deviation)[0]:
             share = min(2.0 * deviation * spread / extent, 1.0)
             found.append(_named(weights[members], columns[members], known.ranges, parameters, share))
     return found

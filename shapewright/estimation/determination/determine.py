@@ -13,8 +13,8 @@ from shapewright.estimation.determination.information import N_POSE, Information
 from shapewright.estimation.determination.lengths import find_lengths
 from shapewright.estimation.determination.ratios import find_ratios
 from shapewright.estimation.determination.statuses import judge
-from shapewright.estimation.findings import Combination, ParameterStatus, Ratio
 from shapewright.estimation.generator import ParameterInfo
+from shapewright.estimation.result import Combination, ParameterStatus, Ratio
 
 RESIDUAL_FLOOR: Final = 1e-4
 """Least mean residual, in half extents: a query that is cut from an instance is not fitted any better than its
@@ -91,9 +91,9 @@ def determine(
     columns = np.array(continuous, dtype=np.int64)[ranged]
     kept = np.concatenate([np.flatnonzero(ranged), len(continuous) + np.arange(N_POSE)])
     information = Information(jacobian[:, kept], highest[columns] - lowest[columns], scale_known)
-    own_gradient = None if gradient is None else gradient[ranged]
-    judged = judge(information, values[columns], lowest[columns], highest[columns], own_gradient)
     deviation = factor * max(mean_residual, RESIDUAL_FLOOR)
+    own_gradient = None if gradient is None else gradient[ranged]
+    judged = judge(information, values[columns], lowest[columns], highest[columns], deviation, own_gradient)
     half_widths = np.full(len(parameters), np.nan)
     half_widths[columns] = deviation * np.sqrt(np.diagonal(information.covariance)) * information.ranges
     statuses: list[ParameterStatus | None] = [None if is_active else "inactive" for is_active in active]

@@ -6,9 +6,9 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from shapewright.estimation.determination.information import Information
-from shapewright.estimation.determination.statuses import exceeds_least_effect
-from shapewright.estimation.findings import Ratio
+from shapewright.estimation.determination.statuses import is_determined
 from shapewright.estimation.generator import ParameterInfo
+from shapewright.estimation.result import Ratio
 
 
 def find_ratios(
@@ -38,7 +38,7 @@ def find_ratios(
     variances = np.diagonal(covariance)
     of_ratio = np.maximum(variances[:, None] + variances[None, :] - 2.0 * covariance, 1e-300)
     range_of_ratio = (relative[:, None] + relative[None, :]) / 2.0
-    determined = exceeds_least_effect((range_of_ratio / np.sqrt(of_ratio)).reshape(-1)).reshape(of_ratio.shape)
+    determined = is_determined((range_of_ratio / np.sqrt(of_ratio)).reshape(-1), deviation).reshape(of_ratio.shape)
     np.fill_diagonal(determined, val=False)
     spread = np.array(
         [np.median(row[known]) if known.any() else np.inf for row, known in zip(of_ratio, determined, strict=True)]

@@ -6,12 +6,14 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from shapewright.estimation.determination.information import Information
-from shapewright.estimation.findings import ParameterStatus
+from shapewright.estimation.result import ParameterStatus
 
 CHANGE: Final = 0.05
 """Share of a range whose effect is looked at."""
 LEAST_EFFECT: Final = 5e-4
 """Root mean square movement of the surface, in half extents, that makes such a change count as determined."""
+WIDEST: Final = 0.15
+"""Half width of an interval, as a share of the range, above which the residual leaves nothing determined."""
 AT_END: Final = 1e-3
 """A value nearer to an end than this share of the range is at the end."""
 END_PUSH: Final = 5e-3
@@ -23,23 +25,25 @@ def judge(
     values: Float[np.ndarray, " A"],
     lowest: Float[np.ndarray, " A"],
     highest: Float[np.ndarray, " A"],
+    deviation: float,
     gradient: Float[np.ndarray, " A"] | None = None,
 ) -> tuple[ParameterStatus, ...]:
     """Return the status of each active continuous parameter.
 
     A parameter is determined if a change by 5 % of its range moves the surface by more than 5e-4 of the half extent
-    with all else refitted; up to scale, if it is so once the scale is known; and at the end of its range, if it is
-    either of these and the query pulls it beyond.
+    with all else refitted, and if the residual leaves its interval narrow; up to scale, if that is so once the scale is
+    known; and at the end of its range, if it is either of these and the query pulls it beyond.
 
     Args:
         information: about the parameters in this order.
         values: x.
         lowest: ends of the ranges at these values.
         highest: the other ends.
+        deviation: what the square root of a variance is multiplied by to give half of an interval.
         gradient: of half the mean squared residual by x, at the fit; without it no value is at an end.
     """
-    determined = exceeds_least_effect(information.effects)
-    up_to_scale = exceeds_least_effect(information.with_known_scale().effects)
+    determined = is_determined(information.effects, deviation)
+    up_to_scale = is_determined(information.with_known_scale().effects, deviation)
     beyond = np.zeros(len(values), dtype=bool)
     if gradient is not None:
         step = -(gradient * information.ranges) / information.effects**2  # shares of the range; all else is at its best
@@ -56,6 +60,6 @@ def judge(
     return tuple(statuses)
 
 
-def exceeds_least_effect(effects: Float[np.ndarray, " K"]) -> Bool[np.ndarray, " K"]:
+def is_determined(effects: Float[np.ndarray, " K"], deviation: float) -> Bool[np.ndarray, " K"]:
     """Tell which effects of a whole range are large enough to determine what has the range."""
-    return np.asarray(CHANGE * effects > LEAST_EFFECT)
+    return np.asarray((CHANGE * effects > LEAST_EFFECT) & (deviation <= WIDEST * effects))
