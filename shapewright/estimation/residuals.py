@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float, Int
 
+from shapewright.distances.even_places import even_places
 from shapewright.errors import EstimationError
 from shapewright.mesh import TriangleMesh
 
@@ -144,17 +145,8 @@ def even_points(mesh: TriangleMesh, count: int) -> tuple[Float[np.ndarray, "N 3"
         MeshError: the surface has no area.
     """
     mesh.centroid  # noqa: B018 - refuses a surface without area
-    sums = np.cumsum(mesh.face_areas)
-    steps = np.arange(count)
-    places = (steps + 0.5) / count * sums[-1]
-    faces = np.minimum(np.searchsorted(sums, places, side="right"), len(sums) - 1)
-    first, second = ((steps + 0.5) * share % 1.0 for share in _R2)
-    root = np.sqrt(first)
-    weights = np.stack([1.0 - root, root * (1.0 - second), root * second], axis=1)
+    faces, weights = even_places(mesh.face_areas, count)
     return np.asarray(np.einsum("nk,nkd->nd", weights, mesh.triangles[faces])), faces
-
-
-_R2 = (0.7548776662466927, 0.5698402909980532)  # Roberts' low-discrepancy sequence in two dimensions
 
 
 def _part(name: str, share_of_area: float, distances: Float[np.ndarray, " N"], tolerance: float) -> PartResidual:

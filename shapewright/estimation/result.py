@@ -118,11 +118,11 @@ class Ratio:
 
 @dataclass(frozen=True)
 class Combination:
-    """A direction in the space of x that the query determines although it does not determine its members.
+    """A weighted sum of displayed values that the query determines although it does not determine its members.
 
     Attributes:
         label: what people read.
-        weights: share of each parameter, by name.
+        weights: of the displayed value of each parameter, by name; the largest is 1.
         interval_share: width of its 90 % interval as a share of what the ranges allow.
     """
 

@@ -11,13 +11,13 @@ from typing import Final
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from shapewright.distances.even_places import even_places
 from shapewright.estimation.generator import InstanceGenerator
 
 LEAST_SAMPLES: Final = 2000
 """On each of the instances that the samples are spread by, the base among them."""
 _INSTANCES: Final = 8
 _DRAWN: Final = 256
-_R2: Final = (0.7548776662466927, 0.5698402909980532)  # Roberts' low-discrepancy sequence in two dimensions
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,11 +83,7 @@ def spread_samples(generator: InstanceGenerator, steps: int, least: int = LEAST_
     density = shares.sum(axis=0) / np.maximum(there.sum(axis=0), 1)
     density /= density.sum()
     count = int(np.ceil(least / (there @ density).min())) + 1
-    places = np.arange(count) + 0.5
-    faces = np.minimum(np.searchsorted(np.cumsum(density), places / count, side="right"), len(triangles) - 1)
-    first, second = (places * share % 1.0 for share in _R2)
-    root = np.sqrt(first)
-    weights = np.stack([1.0 - root, root * (1.0 - second), root * second], axis=1)
+    faces, weights = even_places(density, count)
     return SurfaceSamples(triangles[faces], weights, parts)
 
 

@@ -11,9 +11,6 @@ from shapewright.rendering.pictures import draw_together
 from shapewright.rendering.styles import STYLES
 from shapewright.rendering.views import three_quarter_view
 
-if TYPE_CHECKING:
-    pass
-
 _LEGEND: Final = 56  # pixels
 _MARGIN: Final = 14
 _BAR: Final = 12

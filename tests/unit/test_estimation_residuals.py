@@ -13,12 +13,13 @@ from shapewright.errors import EstimationError
 from shapewright.estimation.residual_views import ResidualViews, divided
 from shapewright.estimation.residuals import even_points, measure_residuals
 from shapewright.mesh.file import parse_mesh
+from shapewright.modeling import compile_model
 from shapewright.modeling.regions import find_regions
 
 
 def armchair(**values):
     model = chair_model.armchair()
-    compiled, regions = model.compile(), find_regions(model)
+    compiled, regions = compile_model(model), find_regions(model)
     row = compiled.values_from_mapping(values)
     return compiled.instance(row), regions.names, regions.of_instance(compiled, row)
 

@@ -4,7 +4,7 @@ import chair_model
 import numpy as np
 import pytest
 
-from shapewright.modeling import Recorder
+from shapewright.modeling import Recorder, compile_model
 from shapewright.modeling.regions import find_regions
 
 
@@ -16,7 +16,7 @@ def test_regions_are_parts_and_what_their_parameters_measure():
 
 def test_a_region_covers_what_its_part_adds():
     model = chair_model.armchair()
-    compiled, regions = model.compile(), find_regions(model)
+    compiled, regions = compile_model(model), find_regions(model)
     values = compiled.values_from_mapping({"armrests": 1, "back": 3})
     for steps in range(3):
         instance = compiled.instance(values, steps)
@@ -46,7 +46,7 @@ def test_parts_with_one_name_before_a_colon_are_one_region():
 @pytest.mark.parametrize("name", ["helicopter", "office_chair", "spider", "glass_with_stem"])
 def test_names_of_shipped_models_are_told_apart(library_models, name):
     model = library_models[name]
-    compiled, regions = model.compile(), find_regions(model)
+    compiled, regions = compile_model(model), find_regions(model)
     assert len(set(regions.names)) == len(regions.names)
     assert len(regions.of_component) == compiled.control_components.max() + 1
     values = compiled.random_values(np.random.default_rng(0), 1)[0]
