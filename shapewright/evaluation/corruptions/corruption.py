@@ -8,7 +8,6 @@ import numpy as np
 from shapewright.errors import EvaluationError
 from shapewright.mesh import TriangleMesh
 
-
 Corrupt = Callable[[TriangleMesh, float, np.random.Generator], TriangleMesh]
 """Takes a mesh, a strength and a source of all choices; returns a corrupted mesh in the same coordinates."""
 
