@@ -19,7 +19,7 @@ from shapewright.distances.alignment import Pose, rotations_24
 from shapewright.estimation import EstimationSettings, estimate
 from shapewright.mesh import TriangleMesh
 from shapewright.mesh.file import load_mesh
-from shapewright.modeling import CompiledModel, ProceduralModel
+from shapewright.modeling import CompiledModel, ProceduralModel, compile_model
 from shapewright.progress import CallbackProgress
 
 
@@ -64,7 +64,7 @@ def main() -> None:
     options = parser.parse_args()
     path = Path(options.model)
     model = ProceduralModel.load(path) if path.suffix == ".json" else load_shipped(options.model)
-    compiled = model.compile()
+    compiled = compile_model(model)
     truth = None
     if options.mesh is None:
         query, truth = synthetic_query(compiled, options.seed)

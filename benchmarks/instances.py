@@ -17,6 +17,7 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 import numpy as np  # noqa: E402 - the number of threads is read when numpy loads
 
 from models_store.library.shipped import list_shipped, load_shipped  # noqa: E402
+from shapewright.modeling import compile_model  # noqa: E402
 
 
 def best_seconds(work: Callable[[], object], repeats: int) -> float:
@@ -32,7 +33,7 @@ def best_seconds(work: Callable[[], object], repeats: int) -> float:
 def measure(name: str, batch: int, repeats: int) -> dict[str, float]:
     """Measure one model."""
     start = time.perf_counter()
-    compiled = load_shipped(name).compile()
+    compiled = compile_model(load_shipped(name))
     compiled.surface_polygons()
     compile_s = time.perf_counter() - start
     values = compiled.random_values(np.random.default_rng(0), batch)

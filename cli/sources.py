@@ -35,9 +35,11 @@ def load_compiled(source: str) -> "CompiledModel":
     Raises:
         ModelError: as :func:`load_model`, or an operation that cannot be done.
     """
+    from shapewright.modeling import compile_model
+
     model = load_model(source)
     try:
-        return model.compile()
+        return compile_model(model)
     except ModelError as error:
         place = f"{source}: {error.where}" if error.where else source
         raise ModelError(error.message, where=place) from None

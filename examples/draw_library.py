@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from models_store.library.shipped import list_classes, load_shipped
+from shapewright.modeling import compile_model
 from shapewright.rendering import render_mesh, three_quarter_view
 
 SIZE, COLUMNS = 112, 9
@@ -31,7 +32,7 @@ def main(target: Path = TARGET) -> None:
     names = list_classes()
     rows = []
     for class_name in CLASSES:
-        models = [load_shipped(name).compile() for name in names[class_name]]
+        models = [compile_model(load_shipped(name)) for name in names[class_name]]
         rng = np.random.default_rng(11)
         meshes = [m.instance(m.random_values(rng, 1)[0]) for m in (models * COLUMNS)[:COLUMNS]]
         pictures = [render_mesh(mesh, rotation=three_quarter_view("z"), size=SIZE) for mesh in meshes]

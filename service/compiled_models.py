@@ -9,7 +9,7 @@ import numpy as np
 
 from shapewright.errors import MeshError, ModelError
 from shapewright.mesh.glb import GlbWriter
-from shapewright.modeling import CompiledModel, ProceduralModel
+from shapewright.modeling import CompiledModel, ProceduralModel, compile_model
 
 _LARGEST: Final = np.finfo(np.float32).max
 """GLB files hold float32."""
@@ -28,7 +28,7 @@ class InstanceGenerator:
         Raises:
             ModelError: the model cannot be compiled.
         """
-        self.compiled: CompiledModel = model.compile()
+        self.compiled: CompiledModel = compile_model(model)
         self._corners = sum(map(len, self.compiled.control_faces))
         self._max_corners = max_corners
 

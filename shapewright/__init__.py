@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from shapewright.estimation import ClassEstimation, Estimation, EstimationSettings, estimate, estimate_class
     from shapewright.mesh import TriangleMesh
     from shapewright.mesh.file import load_mesh, parse_mesh
-    from shapewright.modeling import CompiledModel, Parameter, ProceduralModel, Recorder
+    from shapewright.modeling import CompiledModel, Parameter, ProceduralModel, Recorder, compile_model
     from shapewright.rendering import render_images, render_mesh
 
 _HOMES = {
@@ -36,6 +36,7 @@ _HOMES = {
     "TrainedClassifier": "classification",
     "TrainingSettings": "classification",
     "TriangleMesh": "mesh",
+    "compile_model": "modeling",
     "estimate": "estimation",
     "estimate_class": "estimation",
     "load_mesh": "mesh.file",
@@ -60,6 +61,7 @@ __all__ = [
     "TrainedClassifier",
     "TrainingSettings",
     "TriangleMesh",
+    "compile_model",
     "estimate",
     "estimate_class",
     "load_mesh",

@@ -21,7 +21,7 @@ from models_store.jobs import JobState, get_job, list_events
 from models_store.session import Database, upgrade
 from models_store.settings import StoreSettings
 from models_store.tables import EstimationRow, JobRow
-from shapewright.modeling import ProceduralModel, Recorder
+from shapewright.modeling import ProceduralModel, Recorder, compile_model
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 QUICK = {"subdivision_steps": 0, "surface_points": 50, "image_size": 16, "step_sizes": [1.0]}
@@ -97,7 +97,7 @@ class Site:
         self, samples: int, *, height: float = 1.4, send: bool = True, **options: Any
     ) -> EstimationRow:
         """Queue a quick estimation of a brick of this height, by the brick."""
-        compiled = brick().compile()
+        compiled = compile_model(brick())
         query = compiled.instance(np.array([height]), steps=0)
         mesh, _ = catalog.store_mesh(
             self.database, self.artifacts, query.to_bytes("off"),

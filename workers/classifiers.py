@@ -69,9 +69,11 @@ class StoredModels(Mapping[str, "CompiledModel"]):
         if model_id not in self._ids:
             raise KeyError(model_id)
         if model_id not in _compiled:
+            from shapewright.modeling import compile_model
+
             while len(_compiled) >= _MOST_COMPILED:
                 del _compiled[next(iter(_compiled))]
-            _compiled[model_id] = self._context.load_model(model_id).compile()
+            _compiled[model_id] = compile_model(self._context.load_model(model_id))
         return _compiled[model_id]
 
     def __iter__(self) -> Iterator[str]:

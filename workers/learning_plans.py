@@ -49,6 +49,7 @@ def learning_plan(context: JobContext, classifier_id: str, progress: Progress) -
     if classifier_id not in _kept:
         from shapewright.classification import TrainingSettings
         from shapewright.classification.dataset import plan_learning
+        from shapewright.modeling import compile_model
 
         with context.database.reading() as session:
             row = catalog.get_classifier(session, classifier_id)
@@ -58,7 +59,7 @@ def learning_plan(context: JobContext, classifier_id: str, progress: Progress) -
         for model_id in wanted:
             progress.report(0.0, "compiling models")
             if model_id not in _compiled:
-                _compiled[model_id] = context.load_model(model_id).compile()
+                _compiled[model_id] = compile_model(context.load_model(model_id))
         classes: dict[str, list[CompiledModel]] = {}
         for model_id in row.model_ids:
             compiled = _compiled[model_id]

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from models_store.library.shipped import DOCUMENT, THUMBNAIL
-from shapewright.modeling import ProceduralModel
+from shapewright.modeling import ProceduralModel, compile_model
 
 THUMBNAIL_SIZE = 256
 
@@ -19,7 +19,7 @@ def publish(model: ProceduralModel, folder: Path) -> None:
 
     from shapewright.rendering import render_mesh, three_quarter_view
 
-    compiled = model.compile()
+    compiled = compile_model(model)
     picture = render_mesh(
         compiled.instance(compiled.base_values()), rotation=three_quarter_view("z"), size=THUMBNAIL_SIZE
     )

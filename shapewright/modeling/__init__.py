@@ -1,6 +1,6 @@
 """Procedural models: a base mesh, an ordered list of modelling operations, and named parameters."""
 
-from shapewright.modeling.compiled import CompiledModel
+from shapewright.modeling.compiled import CompiledModel, compile_model
 from shapewright.modeling.component import Component
 from shapewright.modeling.dependence import Condition, Limit, when
 from shapewright.modeling.elements import Element, Mirror, Target, Turn, group, imaged, mirrored, turned
@@ -25,6 +25,7 @@ __all__ = [
     "Symmetry",
     "Target",
     "Turn",
+    "compile_model",
     "group",
     "imaged",
     "json_schema",

@@ -5,7 +5,6 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -18,10 +17,8 @@ from shapewright.modeling.operations import Operation
 from shapewright.modeling.operations.operation import Quantities, Step
 from shapewright.modeling.parameter_space import ParameterSpace, Values
 from shapewright.modeling.part import ALWAYS, PartVertices
+from shapewright.modeling.procedural_model import ProceduralModel
 from shapewright.modeling.subdivision import Polygons, SubdivisionStep, subdivide
-
-if TYPE_CHECKING:
-    from shapewright.modeling.procedural_model import ProceduralModel
 
 SUBDIVISION_STEPS = 2
 """Surface sampling uses two steps (PAPER-NOTES, section 3)."""
@@ -56,14 +53,14 @@ class _BoundStep:
 
 
 class CompiledModel:
-    """Evaluates a procedural model. Make it with :meth:`ProceduralModel.compile`.
+    """Evaluates a procedural model. Make it with :func:`compile_model`.
 
     Parameter values x are arrays (B, P), in the order of ``model.parameters``; a row is one instance, and the row
     of ones is the base model. All instances of a batch share one topology; a part that a row lacks is drawn together to
     a point inside the object. :meth:`instance` leaves it out.
     """
 
-    def __init__(self, model: "ProceduralModel") -> None:
+    def __init__(self, model: ProceduralModel) -> None:
         self.model = model
         self.space = ParameterSpace(model.parameters)
         mesh = ControlMesh()
@@ -290,6 +287,19 @@ class CompiledModel:
         if not np.isfinite(values).all():
             raise ParameterError("a value is not finite")
         return self.space.settle(values)
+
+
+def compile_model(model: ProceduralModel) -> CompiledModel:
+    """Build the topology of a model once; the result evaluates batches of parameters.
+
+    Raises:
+        ModelError: an operation names an element that does not exist yet, or is impossible there; or the mesh is open
+            though ``closed`` says that it is not.
+    """
+    compiled = CompiledModel(model)
+    if model.closed and not compiled.is_closed:
+        raise ModelError("the model says that it is closed, but its mesh has open edges", where="closed")
+    return compiled
 
 
 def _split(steps: list[_BoundStep]) -> tuple[tuple[_BoundStep, ...], tuple[_BoundStep, ...]]:

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from shapewright.errors import ModelError
-from shapewright.modeling.compiled import CompiledModel
 from shapewright.modeling.fields import read_object, shown
 from shapewright.modeling.operations import OPERATIONS, Base, Operation
 from shapewright.modeling.parameter import NAME_PATTERN, Parameter
@@ -80,18 +79,6 @@ class ProceduralModel:
         space = ParameterSpace(self.parameters)
         for number, part in enumerate(self.parts):
             space.check_conditions(part.present_when, f"parts[{number}].present_when")
-
-    def compile(self) -> CompiledModel:
-        """Build the topology once; the result evaluates batches of parameters.
-
-        Raises:
-            ModelError: an operation names an element that does not exist yet, or is impossible there; or the mesh
-                is open though ``closed`` says that it is not.
-        """
-        compiled = CompiledModel(self)
-        if self.closed and not compiled.is_closed:
-            raise ModelError("the model says that it is closed, but its mesh has open edges", where="closed")
-        return compiled
 
     # ------------------------------------------------------------------ document
 

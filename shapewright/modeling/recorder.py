@@ -12,6 +12,7 @@ import numpy as np
 from jaxtyping import Float
 
 from shapewright.errors import ModelError
+from shapewright.modeling.compiled import compile_model
 from shapewright.modeling.component import Component
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.declarations import Declarations
@@ -278,7 +279,7 @@ class Recorder(Declarations):
             tuple(self._parts),
             self._symmetry,
         )
-        model.compile()
+        compile_model(model)
         return model
 
     # ------------------------------------------------------------------ inside

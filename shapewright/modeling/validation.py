@@ -13,7 +13,7 @@ from jaxtyping import Bool, Float
 from scipy.spatial import cKDTree
 
 from shapewright.errors import ModelError
-from shapewright.modeling.compiled import CompiledModel
+from shapewright.modeling.compiled import CompiledModel, compile_model
 from shapewright.modeling.contexts import active_row, distinct_values
 from shapewright.modeling.procedural_model import ProceduralModel
 from shapewright.modeling.variation_checks import VARIATION_CHECKS, check_variations
@@ -71,7 +71,7 @@ def validate_model(
         progress: told what is being done; may cancel.
     """
     try:
-        compiled = model.compile()
+        compiled = compile_model(model)
         compiled.surface_polygons()  # may be too large
     except ModelError as error:
         return [Finding(model.name, "topology", error.where or "", error.message, {})]
@@ -107,7 +107,7 @@ def replay_faults(compiled: CompiledModel, values: Float[np.ndarray, "B P"], doc
         faults.append("the document is not what the model writes")
     try:
         again = ProceduralModel.from_json(text)
-        replayed = again.compile()
+        replayed = compile_model(again)
     except ModelError as error:
         return [*faults, f"the written document cannot be read again: {error}"]
     if again.to_json() != text:

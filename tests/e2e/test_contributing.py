@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from shapewright.modeling import ProceduralModel
+from shapewright.modeling import ProceduralModel, compile_model
 
 
 @pytest.fixture
@@ -51,7 +51,7 @@ def test_the_mug_is_modelled_looked_at_validated_and_changed(repository: Path, s
     assert (tmp_path / "mug.png").stat().st_size > 10_000
     run(repository, "-m", "cli", "models", "validate", document)
 
-    compiled = first.compile()
+    compiled = compile_model(first)
     bare = compiled.instance(compiled.values_from_mapping({"handle": 0}))
     assert bare.vertices[:, 0].max() < compiled.instance(compiled.base_values()).vertices[:, 0].max() - 0.01
     low = compiled.values_from_mapping({"height": 0.6})
@@ -62,7 +62,7 @@ def test_the_mug_is_modelled_looked_at_validated_and_changed(repository: Path, s
     changed = build(repository, script)
     assert changed.digest != first.digest
     run(repository, "-m", "cli", "models", "validate", document)
-    meshes = [model.compile().instance(np.ones(5)) for model in (first, changed)]
+    meshes = [compile_model(model).instance(np.ones(5)) for model in (first, changed)]
     volumes = [
         float(np.einsum("ij,ij->i", t[:, 0], np.cross(t[:, 1], t[:, 2])).sum() / 6)
         for m in meshes

@@ -18,7 +18,7 @@ from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
 from cli.client import Client, connected
 from cli.local_service import local_service
 from shapewright.mesh import TriangleMesh
-from shapewright.modeling import ProceduralModel, Recorder
+from shapewright.modeling import ProceduralModel, Recorder, compile_model
 
 pytestmark = pytest.mark.browser
 
@@ -128,7 +128,7 @@ def new_page(browser: Browser, site: Site) -> Iterator[Callable[..., Page]]:
 @pytest.fixture
 def lamp_file(site: Site, tmp_path: Path) -> Path:
     """A long, thin lamp, turned, enlarged and moved away."""
-    compiled = site.lamp.compile()
+    compiled = compile_model(site.lamp)
     mesh: TriangleMesh = compiled.instance(compiled.values_from_mapping({"post_length": 1.6, "post_width": 0.7}))
     turn = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
     path = tmp_path / "found lamp.off"
@@ -253,7 +253,7 @@ def test_what_depends_on_other_values_follows_them(new_page: Callable[..., Page]
 def test_a_mesh_is_rebuilt_by_the_best_model_of_its_class(
     new_page: Callable[..., Page], site: Site, tmp_path: Path
 ) -> None:
-    compiled = armchair().compile()
+    compiled = compile_model(armchair())
     path = tmp_path / "found chair.off"
     compiled.instance(compiled.values_from_mapping({"armrests": 0, "back": 2, "leg_length": 1.5})).save(path)
     coarse = {"samples": 200, "surface_points": 50, "image_size": 16, "subdivision_steps": 1, "step_sizes": [0.5]}
@@ -386,13 +386,13 @@ def test_an_estimation_can_be_cancelled(new_page: Callable[..., Page], lamp_file
 
 
 def test_meshes_of_a_class_are_found_in_a_collection(new_page: Callable[..., Page], site: Site, tmp_path: Path) -> None:
-    compiled = site.lamp.compile()
+    compiled = compile_model(site.lamp)
     with connected(site.url, ready_within_s=START_TIMEOUT_S) as client:
         for number, length in enumerate((0.6, 1.9)):
             mesh = compiled.instance(compiled.values_from_mapping({"post_length": length}))
             mesh.save(tmp_path / f"lamp {number}.ply")
             client.upload("/v1/meshes", tmp_path / f"lamp {number}.ply")
-        crate = ProceduralModel.load(_write_crate_model(tmp_path)).compile()
+        crate = compile_model(ProceduralModel.load(_write_crate_model(tmp_path)))
         for number, height in enumerate((0.3, 1.5)):
             crate.instance(crate.values_from_mapping({"height": height})).save(tmp_path / f"crate {number}.ply")
             client.upload("/v1/meshes", tmp_path / f"crate {number}.ply")

@@ -17,6 +17,7 @@ from services import free_port, logged_process
 from cli.client import Client, connected
 from shapewright.mesh import TriangleMesh
 from shapewright.mesh.file import parse_mesh
+from shapewright.modeling import compile_model
 
 if TYPE_CHECKING:
     from shapewright.modeling import ProceduralModel
@@ -41,7 +42,7 @@ def _command(repository: Path, service: str) -> list[str]:
 
 def _glass(model: "ProceduralModel") -> tuple[TriangleMesh, dict[str, float]]:
     """A variation that the service has never seen, turned, shifted and scaled."""
-    compiled = model.compile()
+    compiled = compile_model(model)
     values = 1.0 + 0.4 * (compiled.random_values(np.random.default_rng(5), 1)[0] - 1.0)
     turn = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     mesh = compiled.instance(values).transformed(turn, np.array([3.0, -2.0, 5.0]), 7.0)

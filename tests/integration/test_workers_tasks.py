@@ -24,7 +24,7 @@ from models_store.tables import ClassifierRow
 from shapewright.classification.exemplars import Exemplars
 from shapewright.estimation import EstimationSettings, PanoramaBank, estimate
 from shapewright.mesh.file import parse_mesh
-from shapewright.modeling import ProceduralModel, Recorder
+from shapewright.modeling import ProceduralModel, Recorder, compile_model
 from workers.array_store import ArtifactArrays
 from workers.runner import Runner
 from workers.settings import WorkerSettings
@@ -62,7 +62,7 @@ def test_an_estimation_is_what_the_library_says_and_keeps_the_bank(site: Site) -
     result = site.estimation(first.id).result
     query = parse_mesh(site.artifacts.get(f"meshes/{first.mesh_id}/source.off"), "off")
     settings = EstimationSettings.from_dict({**QUICK, "samples": 100})
-    expected = estimate(query, brick().compile(), settings).to_dict()
+    expected = estimate(query, compile_model(brick()), settings).to_dict()
     assert {name: value for name, value in result.items() if name != "seconds"} == expected
 
     assert len(PanoramaBank.load(bank_file(site))) == 100
@@ -77,7 +77,7 @@ def test_an_estimation_is_what_the_library_says_and_keeps_the_bank(site: Site) -
 def test_an_estimation_for_a_class_finds_the_model_and_keeps_every_bank(site: Site) -> None:
     bricks, rods = brick(), replace(rod(), class_name="brick")
     models = [site.add_model(bricks), site.add_model(rods)]
-    query = rods.compile().instance(np.array([1.7])).to_bytes("off")
+    query = compile_model(rods).instance(np.array([1.7])).to_bytes("off")
     stored, _ = catalog.store_mesh(
         site.database, site.artifacts, query, file_name="q.off", file_type="off",
         mesh=parse_mesh(query, "off"), now=now(),
@@ -143,7 +143,7 @@ def test_a_classifier_is_trained_and_tells_a_brick_from_a_rod(site: Site) -> Non
     run(site, classifier.job_id)
     assert site.job(classifier.job_id).state is JobState.SUCCEEDED, site.job(classifier.job_id).error_detail
     for model in (brick(), rod()):
-        mesh = model.compile().instance(np.array([0.8]))
+        mesh = compile_model(model).instance(np.array([0.8]))
         data = mesh.to_bytes("ply")
         stored, _ = catalog.store_mesh(
             site.database, site.artifacts, data, file_name="q.ply", file_type="ply", mesh=mesh, now=now()
@@ -184,7 +184,7 @@ def test_a_classifier_is_trained_and_tells_a_brick_from_a_rod(site: Site) -> Non
 def test_a_classifier_without_exemplars_looks_at_pictures_alone(site: Site) -> None:
     classifier = queue_training(site, [brick(), rod()], exemplars=False, negatives=0)
     succeed(site, classifier.job_id, site.artifacts)
-    query = rod().compile().instance(np.array([0.8]))
+    query = compile_model(rod()).instance(np.array([0.8]))
     stored, _ = catalog.store_mesh(
         site.database, site.artifacts, query.to_bytes("ply"), file_name="q.ply", file_type="ply", mesh=query, now=now()
     )

@@ -14,13 +14,13 @@ from shapewright.distances.zbuffer import ZBufferTarget
 from shapewright.estimation import EstimationSettings
 from shapewright.estimation.comparison import Comparison
 from shapewright.mesh import TriangleMesh
-from shapewright.modeling import CompiledModel
+from shapewright.modeling import CompiledModel, compile_model
 from shapewright.rendering import render_images
 
 
 @pytest.fixture(scope="module")
 def chair() -> CompiledModel:
-    return armchair().compile()
+    return compile_model(armchair())
 
 
 @pytest.fixture(scope="module")

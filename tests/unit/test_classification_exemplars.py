@@ -16,6 +16,7 @@ from shapewright.classification.exemplars import exemplars_of
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor
 from shapewright.errors import ClassifierError
 from shapewright.mapped_arrays import read_arrays, read_header, write_arrays
+from shapewright.modeling import compile_model
 
 SETTINGS = TrainingSettings(variations=5, negatives=0, subdivision_steps=1, seed=4)
 NAMES = ("classes", "models", "numbers", "descriptors")
@@ -32,7 +33,7 @@ def described(classes, settings: TrainingSettings = SETTINGS) -> Exemplars:
 @pytest.fixture(scope="module")
 def classes() -> dict:
     toys = toy_classes()
-    return {"table": [load_shipped("table_wire").compile(), toys["bench"][0]], "cross": toys["cross"]}
+    return {"table": [compile_model(load_shipped("table_wire")), toys["bench"][0]], "cross": toys["cross"]}
 
 
 @pytest.fixture(scope="module")

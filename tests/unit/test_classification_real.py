@@ -7,6 +7,7 @@ import pytest
 
 from shapewright.classification import Classifier, TrainingSettings, train_classifier
 from shapewright.mesh.file import load_mesh
+from shapewright.modeling import compile_model
 
 QUERIES = {"m495.off": "glass_with_stem", "m872.off": "table", "m707.off": "sword"}
 
@@ -19,7 +20,7 @@ def classifier(library_models) -> Classifier:
     by_class: dict[str, list] = {}
     for model in library_models.values():
         if model.class_name in QUERIES.values():
-            by_class.setdefault(model.class_name, []).append(model.compile())
+            by_class.setdefault(model.class_name, []).append(compile_model(model))
     settings = TrainingSettings(variations=16, images_per_variation=4, negatives=8, held_out=0.2, epochs=40)
     trained = train_classifier(by_class, settings)
     return Classifier(trained.onnx, exemplars=trained.exemplars)

@@ -27,6 +27,7 @@ from shapewright.distances.panorama import DESCRIPTOR_SIZE, panorama_descriptor,
 from shapewright.errors import Cancelled, ClassifierError
 from shapewright.estimation import build_bank
 from shapewright.mesh import TriangleMesh
+from shapewright.modeling import compile_model
 from shapewright.progress import CallbackProgress
 
 DIGEST = "d" * 64
@@ -118,7 +119,7 @@ def test_damaged_and_foreign_files_are_refused(index: CollectionIndex, tmp_path:
         path.write_bytes(content)
         with pytest.raises(ClassifierError, match="no index"):
             CollectionIndex.load(path)
-    build_bank(slab().compile(), 2).save(path)
+    build_bank(compile_model(slab()), 2).save(path)
     with pytest.raises(ClassifierError, match="unknown"):
         CollectionIndex.load(path)
     with pytest.raises(FileNotFoundError):
@@ -153,7 +154,9 @@ def exemplars() -> dict[str, np.ndarray]:
     def bank_of(compiled, count, progress):
         return build_bank(compiled, count, np.random.default_rng(0), progress).descriptors
 
-    return {model.class_name: gather_instances([model.compile()], bank_of, instances=30) for model in (rod(), slab())}
+    return {
+        model.class_name: gather_instances([compile_model(model)], bank_of, instances=30) for model in (rod(), slab())
+    }
 
 
 @pytest.mark.parametrize("evidence", ["probabilities", "panorama", "combined"])
@@ -185,9 +188,9 @@ def test_a_base_instance_alone_is_the_papers_comparison(exemplars) -> None:
     def never(compiled, count, progress):
         raise AssertionError
 
-    (base,) = gather_instances([slab().compile()], never, instances=0)
+    (base,) = gather_instances([compile_model(slab())], never, instances=0)
     np.testing.assert_array_equal(base, exemplars["slab"][0])
-    mesh = slab().compile().instance(np.ones(1))
+    mesh = compile_model(slab()).instance(np.ones(1))
     np.testing.assert_array_equal(base, panorama_descriptor(mesh.vertices, mesh.faces).to_array())
 
 

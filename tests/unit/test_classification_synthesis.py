@@ -8,13 +8,14 @@ from shapewright.classification import Classifier, TrainingSettings, train_class
 from shapewright.classification.synthesis import fit_class
 from shapewright.distances.panorama import panorama_descriptor, panorama_distance
 from shapewright.errors import ClassifierError
+from shapewright.modeling import compile_model
 
 SETTINGS = TrainingSettings(variations=16, images_per_variation=2, image_size=96, negatives=0, epochs=10)
 
 
 @pytest.fixture(scope="module")
 def models():
-    return {name: load_shipped(name).compile() for name in ("table_wire", "glass_with_stem_shell")}
+    return {name: compile_model(load_shipped(name)) for name in ("table_wire", "glass_with_stem_shell")}
 
 
 @pytest.fixture(scope="module")

@@ -8,13 +8,14 @@ from small_dataset import write_dataset
 
 from cli.evaluation_options import cache_folder, names_in
 from models_store.library.shipped import load_shipped
+from shapewright.modeling import compile_model
 
 
 @pytest.fixture(scope="module")
 def dataset(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Two swords, two stools; a cube, and what `write_dataset` adds that cannot be read, as swords."""
     folder = tmp_path_factory.mktemp("data")
-    write_dataset(folder, [(load_shipped(name).compile(), 2) for name in ("sword", "stool")])
+    write_dataset(folder, [(compile_model(load_shipped(name)), 2) for name in ("sword", "stool")])
     labels = folder / "labels.csv"
     labels.write_text(labels.read_text().replace(",slab,", ",sword,"))
     return folder

@@ -11,6 +11,7 @@ from small_dataset import write_dataset
 from cli.evaluate_classifier import Options, _settings
 from models_store.library.shipped import load_shipped
 from shapewright.evaluation.retrieval_metrics import average_precision
+from shapewright.modeling import compile_model
 
 SETTINGS = {"variations": 16, "images_per_variation": 2, "image_size": 128, "negatives": 8, "epochs": 15}
 
@@ -19,7 +20,9 @@ SETTINGS = {"variations": 16, "images_per_variation": 2, "image_size": 128, "neg
 def dataset(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Three swords, three stools that no class stands for, three glasses, and files that cannot be read."""
     folder = tmp_path_factory.mktemp("data")
-    write_dataset(folder, [(load_shipped(name).compile(), 3) for name in ("sword_katana", "stool", "glass_with_stem")])
+    write_dataset(
+        folder, [(compile_model(load_shipped(name)), 3) for name in ("sword_katana", "stool", "glass_with_stem")]
+    )
     (folder / "settings.json").write_text(json.dumps(SETTINGS))
     return folder
 

@@ -9,6 +9,7 @@ from chair_model import armchair
 from command_line import shapewright, write_lamp_model
 
 from shapewright.mesh.file import load_mesh
+from shapewright.modeling import compile_model
 
 
 @pytest.fixture
@@ -43,7 +44,7 @@ def test_an_option_may_be_named_and_random_values_keep_it(tmp_path: Path) -> Non
     full = shapewright("instance", chair, "-o", tmp_path / "b.off", "--json").document["instances"][0]
     assert base["face_count"] < full["face_count"]
     arguments = ("instance", chair, "-o", tmp_path / "c.off", "--random", "--count", 4, *named, "--json")
-    compiled = armchair().compile()
+    compiled = compile_model(armchair())
     for item in shapewright(*arguments).document["instances"]:
         assert (item["values"]["back"], item["values"]["armrests"]) == (3.0, 0.0)
         row = np.array([list(item["values"].values())])

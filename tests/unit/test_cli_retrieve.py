@@ -10,6 +10,7 @@ from PIL import Image
 from small_dataset import rod, slab
 
 from shapewright.classification import CollectionIndex
+from shapewright.modeling import compile_model
 
 ASKED = ExtentClassifier()
 
@@ -22,10 +23,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     below.mkdir(parents=True)
     for model in (slab(), rod()):
         model.save(folder / f"{model.name}.json")
-        compiled = model.compile()
+        compiled = compile_model(model)
         for number, x in enumerate((0.8, 1.3)):
             compiled.instance(np.array([x])).save(below.parent / f"{model.name}{number}.off")
-    slab().compile().instance(np.array([1.1])).save(below / "deep.PLY")
+    compile_model(slab()).instance(np.array([1.1])).save(below / "deep.PLY")
     (below / "broken.off").write_text("OFF\n3 1 0\n0 0 0\n")
     (below / "notes.txt").write_text("no mesh")
     (folder / "classifier.onnx").write_bytes(b"stands for a classifier")
@@ -75,7 +76,7 @@ def test_a_model_finds_what_is_like_it(evidence: str) -> None:
 
 def test_a_mesh_finds_its_like_without_being_in_the_collection(folder: Path, tmp_path: Path) -> None:
     query = tmp_path / "query.obj"
-    rod().compile().instance(np.array([1.3])).save(query)
+    compile_model(rod()).instance(np.array([1.3])).save(query)
     outcome = retrieve("--mesh", query, "--json", "--limit", "2")
     assert files(outcome) == ["rod1.off", "rod0.off"]
     assert outcome.document["n"] == 5

@@ -20,7 +20,7 @@ from shapewright.estimation import (
 from shapewright.estimation.classes import REFINED
 from shapewright.estimation.generator import InstanceGenerator
 from shapewright.mesh import TriangleMesh
-from shapewright.modeling import CompiledModel, Recorder
+from shapewright.modeling import CompiledModel, Recorder, compile_model
 from shapewright.progress import NULL_PROGRESS, CallbackProgress, Progress
 
 SMALL = EstimationSettings(
@@ -39,12 +39,12 @@ def plank(name: str, length: float) -> CompiledModel:
     box = recorder.box(length, 1.0, 0.2)
     recorder.extrude(box.top, 0.3, length="height")
     recorder.parameter("height", "Height", 0.5, 2.0)
-    return recorder.build().compile()
+    return compile_model(recorder.build())
 
 
 @pytest.fixture(scope="module")
 def generators() -> list[CompiledModel]:
-    return [plank("plank", 3.0), armchair().compile(), plank("board", 5.0)]
+    return [plank("plank", 3.0), compile_model(armchair()), plank("board", 5.0)]
 
 
 @pytest.fixture(scope="module")

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from shapewright.errors import Cancelled
 from shapewright.estimation.hill_climbing import Candidate, HillClimb, SearchSpace, hill_climb, without_pose
+from shapewright.modeling import compile_model
 from shapewright.progress import CallbackProgress
 
 STEPS = (1.0, 0.5, 0.25, 0.1, 0.01)
@@ -71,7 +72,7 @@ def test_the_end_of_a_range_is_taken_only_if_it_is_better() -> None:
 
 
 def test_options_are_tried_instead_of_steps_and_inactive_values_cost_nothing() -> None:
-    compiled = armchair().compile()
+    compiled = compile_model(armchair())
     columns = compiled.space.columns
     options = tuple(tuple(x for x, _ in parameter.named_options()) for parameter in compiled.model.parameters)
     goal = compiled.values_from_mapping({"back": 3, "armrests": 0, "leg_length": 1.6, "ring_height": 1.4})

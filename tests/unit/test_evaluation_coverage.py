@@ -20,10 +20,10 @@ from shapewright.evaluation.metrics import coverage_of_classes
 from shapewright.evaluation.report import coverage_report
 from shapewright.evaluation.turned_alike import rotation_like
 from shapewright.mesh.file import load_mesh
-from shapewright.modeling import CompiledModel
+from shapewright.modeling import CompiledModel, compile_model
 from shapewright.progress import CallbackProgress
 
-SLAB, ROD, BENT = slab().compile(), rod().compile(), bent_rod().compile()
+SLAB, ROD, BENT = compile_model(slab()), compile_model(rod()), compile_model(bent_rod())
 MODELS = {"rod": [ROD, BENT], "slab": [SLAB]}
 
 
@@ -121,7 +121,7 @@ def test_a_changed_model_replaces_what_was_kept_of_it(tmp_path: Path) -> None:
     cache.bank(BankRequest(SLAB, 8, 0))
     cache.bank(BankRequest(ROD, 8, 0))
     parameter = replace(SLAB.model.parameters[0], maximum=1.5)
-    changed = replace(SLAB.model, parameters=(parameter,)).compile()
+    changed = compile_model(replace(SLAB.model, parameters=(parameter,)))
     bank = cache.bank(BankRequest(changed, 8, 0))
     assert bank.model_digest == changed.model.digest
     assert sorted(path.name.split("-")[0] for path in tmp_path.glob("*.npz")) == ["rod", "slab"]

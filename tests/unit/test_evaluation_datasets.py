@@ -11,6 +11,7 @@ from small_dataset import slab, write_dataset
 from shapewright.errors import EvaluationError
 from shapewright.evaluation.datasets import LabelledFile, Skipped, load_each, of_classes, read_dataset, spread
 from shapewright.mesh import TriangleMesh
+from shapewright.modeling import compile_model
 
 labels = st.lists(st.sampled_from(["fish", "gun", "table", "other"]), min_size=1, max_size=40)
 
@@ -20,7 +21,7 @@ def items(class_names: list[str]) -> list[LabelledFile]:
 
 
 def test_files_are_found_below_the_folder_and_below_its_meshes(tmp_path: Path) -> None:
-    good = write_dataset(tmp_path, [(slab().compile(), 2)])
+    good = write_dataset(tmp_path, [(compile_model(slab()), 2)])
     read = read_dataset(tmp_path)
     assert [item.file for item in read] == [*good, "cube.off", "broken.off", "missing.off"]
     assert read[0].path == tmp_path / "meshes" / good[0]
@@ -30,7 +31,7 @@ def test_files_are_found_below_the_folder_and_below_its_meshes(tmp_path: Path) -
 
 
 def test_unreadable_meshes_are_told_and_the_others_read(tmp_path: Path) -> None:
-    write_dataset(tmp_path, [(slab().compile(), 1)])
+    write_dataset(tmp_path, [(compile_model(slab()), 1)])
     read = read_dataset(tmp_path)
     for jobs in (1, 3):
         loaded = [mesh for _, mesh in load_each(read, jobs=jobs)]

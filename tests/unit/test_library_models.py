@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 import models_store.library
 from models_store.library.shipped import list_shipped, load_shipped, thumbnail_png
 from shapewright.errors import ModelError
-from shapewright.modeling import CompiledModel, ProceduralModel
+from shapewright.modeling import CompiledModel, ProceduralModel, compile_model
 from shapewright.modeling.validation import validate_model
 
 NAMES = list(list_shipped())
@@ -33,7 +33,7 @@ def model_of(name: str) -> ProceduralModel:
 
 @cache
 def compiled_model(name: str) -> CompiledModel:
-    return model_of(name).compile()
+    return compile_model(model_of(name))
 
 
 def variations(name: str) -> np.ndarray:
@@ -85,7 +85,7 @@ def test_without_parameters_the_operations_give_the_base_model(name: str) -> Non
     model, compiled = model_of(name), compiled_model(name)
     bare = ProceduralModel(model.name, model.class_name, model.operations, (), model.description, model.closed)
     present = np.append(compiled.parts_present(compiled.base_values()[None])[0], True)[compiled.surface_parts()]
-    np.testing.assert_allclose(base_points(bare.compile())[present], base_points(compiled)[present], atol=1e-12)
+    np.testing.assert_allclose(base_points(compile_model(bare))[present], base_points(compiled)[present], atol=1e-12)
 
 
 @every_model

@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_models import Recipe, recipes
 
-from shapewright.modeling import CompiledModel, ProceduralModel, compiled
+from shapewright.modeling import CompiledModel, ProceduralModel, compile_model, compiled
 
 
 def evaluated_step_by_step(model: ProceduralModel, values: np.ndarray) -> np.ndarray:
@@ -20,7 +20,7 @@ def evaluated_step_by_step(model: ProceduralModel, values: np.ndarray) -> np.nda
 @given(recipes(), st.integers(0, 2**32 - 1))
 def test_steps_that_are_done_once_change_nothing(recipe: Recipe, seed: int) -> None:
     model = recipe.build()
-    made = model.compile()
+    made = compile_model(model)
     values = made.random_values(np.random.default_rng(seed), 5)
     points = evaluated_step_by_step(model, values)
     scale = max(1.0, float(np.abs(points).max(initial=0.0)))
@@ -28,14 +28,14 @@ def test_steps_that_are_done_once_change_nothing(recipe: Recipe, seed: int) -> N
 
 
 def test_so_it_is_for_a_model_with_parts() -> None:
-    made = armchair().compile()
+    made = compile_model(armchair())
     values = made.random_values(np.random.default_rng(0), 20)
     np.testing.assert_allclose(made.control_points(values), evaluated_step_by_step(armchair(), values), atol=1e-12)
     assert len(made._steps) < len(armchair().operations)
 
 
 def test_instances_are_those_of_one_by_one_without_sharing_arrays() -> None:
-    made = armchair().compile()
+    made = compile_model(armchair())
     values = made.random_values(np.random.default_rng(1), 12)
     for row, instance in zip(values, list(made.instances(values)), strict=True):
         alone = made.instance(row)
@@ -44,7 +44,7 @@ def test_instances_are_those_of_one_by_one_without_sharing_arrays() -> None:
 
 
 def test_fixed_values_stay_and_what_depends_on_them_is_drawn() -> None:
-    made = armchair().compile()
+    made = compile_model(armchair())
     columns = made.space.columns
     drawn = made.random_values(np.random.default_rng(2), 200, {"armrests": 1.0, "ring_height": 1.4})
     np.testing.assert_array_equal(made.settle(drawn), drawn)

@@ -10,7 +10,7 @@ from random_models import Recipe, recipes
 
 from shapewright.distances.panorama import panorama_descriptor
 from shapewright.errors import ModelError, ParameterError
-from shapewright.modeling import CompiledModel, ProceduralModel, Recorder, group, when
+from shapewright.modeling import CompiledModel, ProceduralModel, Recorder, compile_model, group, when
 from shapewright.modeling.upgrade import VERSION
 
 few = settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
@@ -42,13 +42,13 @@ def chair_recorder() -> Recorder:
 
 
 def chair() -> CompiledModel:
-    return chair_recorder().build().compile()
+    return compile_model(chair_recorder().build())
 
 
 @few
 @given(recipes(), st.integers(0, 2**32 - 1))
 def test_settling_is_idempotent_and_random_rows_are_settled(recipe: Recipe, seed: int) -> None:
-    compiled = recipe.build().compile()
+    compiled = compile_model(recipe.build())
     rng = np.random.default_rng(seed)
     drawn = compiled.random_values(rng, 20)
     np.testing.assert_array_equal(compiled.settle(drawn), drawn)
@@ -65,7 +65,7 @@ def test_settling_is_idempotent_and_random_rows_are_settled(recipe: Recipe, seed
 @few
 @given(recipes(), st.integers(0, 2**32 - 1))
 def test_an_instance_is_the_row_of_a_batch_without_its_absent_parts(recipe: Recipe, seed: int) -> None:
-    compiled = recipe.build().compile()
+    compiled = compile_model(recipe.build())
     values = compiled.random_values(np.random.default_rng(seed), 4)
     batch, present = compiled.surface_points(values), compiled.parts_present(values)
     parts, triangles = compiled.surface_parts(), compiled.surface_triangles()
@@ -182,7 +182,7 @@ def test_a_wrong_dependence_is_refused_with_its_place(
         item = item[step]
     item[path[-1]] = value
     with pytest.raises(ModelError, match=message) as refused:
-        ProceduralModel.from_document(document).compile()
+        compile_model(ProceduralModel.from_document(document))
     assert refused.value.where is not None
     assert refused.value.where.startswith(where)
 
@@ -211,7 +211,7 @@ def corridor(room: float) -> Recorder:
 
 
 def test_two_limits_by_one_parameter_may_leave_a_narrow_range_everywhere() -> None:
-    values = corridor(0.2).build().compile().random_values(np.random.default_rng(0), 200)
+    values = compile_model(corridor(0.2).build()).random_values(np.random.default_rng(0), 200)
     above = values[:, 1] - values[:, 0]
     assert above.min() >= -1e-12
     assert above.max() <= 0.2 + 1e-12

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from random_models import Recipe, recipes
 
 from shapewright.errors import ModelError, ParameterError
-from shapewright.modeling import ProceduralModel, Recorder, json_schema
+from shapewright.modeling import ProceduralModel, Recorder, compile_model, json_schema
 from shapewright.modeling.upgrade import FORMAT, upgrade_document
 
 
@@ -77,7 +77,7 @@ def test_a_wrong_document_is_refused_with_the_place(
         holder = holder[key]
     holder[path[-1]] = value
     with pytest.raises(ModelError, match=message) as caught:
-        ProceduralModel.from_document(document).compile()
+        compile_model(ProceduralModel.from_document(document))
     assert caught.value.where == where
 
 
@@ -120,7 +120,7 @@ def test_a_file_that_is_not_there(tmp_path: Any) -> None:
 
 
 def test_values_by_name() -> None:
-    compiled = ProceduralModel.from_document(stool()).compile()
+    compiled = compile_model(ProceduralModel.from_document(stool()))
     np.testing.assert_array_equal(compiled.values_from_mapping({}), [1.0])
     np.testing.assert_array_equal(compiled.values_from_mapping({"height": 1.5}), [1.5])
     for wrong in ({"width": 1.0}, {"height": 9.0}, {"height": float("nan")}, {"height": 10**400}):
@@ -150,5 +150,5 @@ def test_a_document_cannot_fill_the_memory() -> None:
     ]
     document["parameters"] = []
     with pytest.raises(ModelError, match="200000 vertices") as caught:
-        ProceduralModel.from_document(document).compile()
+        compile_model(ProceduralModel.from_document(document))
     assert caught.value.where == "operations[0]"

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_models import Recipe, recipes
 
-from shapewright.modeling import CompiledModel, ProceduralModel
+from shapewright.modeling import CompiledModel, ProceduralModel, compile_model
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.subdivision import subdivide
 
@@ -32,15 +32,15 @@ def test_a_document_replays_to_the_same_model_ids_and_mesh(recipe: Recipe) -> No
     assert again.digest == model.digest
     assert topology(again) == topology(model)
     ones = np.ones((1, len(model.parameters)))
-    np.testing.assert_array_equal(model.compile().control_points(ones), again.compile().control_points(ones))
+    np.testing.assert_array_equal(compile_model(model).control_points(ones), compile_model(again).control_points(ones))
 
 
 @few
 @given(recipes())
 def test_ones_give_the_base_model(recipe: Recipe) -> None:
     model = recipe.build()
-    bare = replace(model, parameters=(), parts=()).compile()
-    compiled = model.compile()
+    bare = compile_model(replace(model, parameters=(), parts=()))
+    compiled = compile_model(model)
     base, ones = bare.surface_points(np.ones((1, 0))), compiled.surface_points(compiled.base_values()[None])
     np.testing.assert_allclose(ones, base, atol=1e-12)
 
@@ -49,7 +49,7 @@ def test_ones_give_the_base_model(recipe: Recipe) -> None:
 @given(recipes(), st.integers(0, 2**32 - 1))
 def test_a_batch_equals_one_by_one(recipe: Recipe, seed: int) -> None:
     model = recipe.build()
-    compiled = model.compile()
+    compiled = compile_model(model)
     values = compiled.random_values(np.random.default_rng(seed), 5)
     batch = compiled.surface_points(values)
     for row, points in zip(values, batch, strict=True):
@@ -62,7 +62,7 @@ def test_a_batch_equals_one_by_one(recipe: Recipe, seed: int) -> None:
 @few
 @given(recipes(), st.integers(0, 2**32 - 1))
 def test_instances_are_finite_and_keep_a_closed_manifold_topology(recipe: Recipe, seed: int) -> None:
-    compiled = recipe.build().compile()
+    compiled = compile_model(recipe.build())
     assert compiled.is_closed
     points = compiled.surface_points(compiled.random_values(np.random.default_rng(seed), 3))
     assert np.isfinite(points).all()
@@ -76,7 +76,7 @@ def test_instances_are_finite_and_keep_a_closed_manifold_topology(recipe: Recipe
 @given(recipes())
 def test_every_parameter_moves_something(recipe: Recipe) -> None:
     model = recipe.build()
-    compiled = model.compile()
+    compiled = compile_model(model)
     for column, parameter in enumerate(model.parameters):
         if parameter.options or any(_vanishes(compiled, target.operation) for target in parameter.targets):
             continue
@@ -94,7 +94,7 @@ def _vanishes(compiled: CompiledModel, operation: int) -> bool:
 @few
 @given(recipes())
 def test_a_face_stays_a_face_under_subdivision(recipe: Recipe) -> None:
-    polygons = recipe.build().compile().surface_polygons(0)
+    polygons = compile_model(recipe.build()).surface_polygons(0)
     step = subdivide(polygons)
     quads = iter(step.refined.loops)
     n_edges = step.refined.n_vertices - polygons.n_vertices - len(polygons.loops)
@@ -107,7 +107,7 @@ def test_a_face_stays_a_face_under_subdivision(recipe: Recipe) -> None:
 @few
 @given(recipes())
 def test_subdivision_weights_sum_to_one_and_ids_come_first(recipe: Recipe) -> None:
-    polygons = recipe.build().compile().surface_polygons(0)
+    polygons = compile_model(recipe.build()).surface_polygons(0)
     step = subdivide(polygons)
     np.testing.assert_allclose(step.matrix.sum(axis=1), 1.0)
     assert step.matrix.shape == (step.refined.n_vertices, polygons.n_vertices)

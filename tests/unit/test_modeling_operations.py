@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shapewright.errors import ModelError
-from shapewright.modeling import CompiledModel, Recorder, Target, imaged, mirrored, turned
+from shapewright.modeling import CompiledModel, Recorder, Target, compile_model, imaged, mirrored, turned
 from shapewright.modeling.elements import Element, Mirror, Turn, edge, face, image_matrix, vertex
 
 
@@ -18,7 +18,7 @@ TOP, BOTTOM, FRONT, RIGHT = face(1), face(0), face(2), face(3)
 
 
 def compiled(recorder: Recorder) -> CompiledModel:
-    return recorder.build().compile()
+    return compile_model(recorder.build())
 
 
 def edge_between(recorder: Recorder, first: int, second: int) -> Element:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shapewright.errors import ModelError
-from shapewright.modeling import Component, Recorder
+from shapewright.modeling import Component, Recorder, compile_model
 from shapewright.modeling.elements import Element, edge, face, vertex
 from shapewright.modeling.subdivision import Polygons, subdivide
 
@@ -18,14 +18,14 @@ def cube(*, sharp: bool = False) -> Recorder:
 
 
 def test_a_smooth_cube_shrinks_towards_the_known_points() -> None:
-    points = cube().build().compile().surface_points(np.ones((1, 0)), steps=1)[0]
+    points = compile_model(cube().build()).surface_points(np.ones((1, 0)), steps=1)[0]
     np.testing.assert_allclose(np.abs(points[:8]), 5 / 9)  # a corner of valence 3: (Q + 2R) / 3
     np.testing.assert_allclose(np.abs(points[8:20]).max(axis=1), 0.75)  # edges: mean of 2 ends and 2 faces
     np.testing.assert_allclose(np.sort(np.abs(points[20:]), axis=1), np.tile([0, 0, 1], (6, 1)), atol=1e-12)
 
 
 def test_a_cube_with_sharp_edges_stays_a_cube() -> None:
-    points = cube(sharp=True).build().compile().surface_points(np.ones((1, 0)), steps=3)[0]
+    points = compile_model(cube(sharp=True).build()).surface_points(np.ones((1, 0)), steps=3)[0]
     np.testing.assert_allclose(np.abs(points).max(axis=1), 1.0)
     corners = np.abs(points).sum(axis=1) > 3 - 1e-9
     assert corners.sum() == 8
@@ -36,7 +36,7 @@ def test_a_crease_stays_a_curve_of_its_own_vertices() -> None:
     loop = recorder.mesh.face(1)
     ring = [edge(recorder.mesh.edge_between(a, b)) for a, b in zip(loop, loop[1:] + loop[:1], strict=True)]
     recorder.mark_sharp(*ring)
-    compiled = recorder.build().compile()
+    compiled = compile_model(recorder.build())
     points = compiled.surface_points(np.ones((1, 0)), steps=2)[0]
     rim = points[np.isclose(points[:, 2], 1.0)]
     assert len(rim) == 25  # the top face is flat to its border: the crease keeps it there
@@ -50,10 +50,10 @@ def test_a_dart_is_smooth_and_a_sharp_vertex_is_a_corner() -> None:
     dart, corner = cube(), cube()
     dart.mark_sharp(edge(dart.mesh.edge_between(4, 5)))
     corner.mark_sharp(vertex(6))
-    smooth = cube().build().compile().surface_points(np.ones((1, 0)), 1)[0]
-    darted = dart.build().compile().surface_points(np.ones((1, 0)), 1)[0]
+    smooth = compile_model(cube().build()).surface_points(np.ones((1, 0)), 1)[0]
+    darted = compile_model(dart.build()).surface_points(np.ones((1, 0)), 1)[0]
     np.testing.assert_allclose(darted[:8], smooth[:8])
-    cornered = corner.build().compile().surface_points(np.ones((1, 0)), 3)[0]
+    cornered = compile_model(corner.build()).surface_points(np.ones((1, 0)), 3)[0]
     np.testing.assert_allclose(cornered[6], [1, 1, 1])
 
 
@@ -79,7 +79,7 @@ def test_chunks_make_up_the_batch(steps: int, monkeypatch: pytest.MonkeyPatch) -
     recorder = cube()
     recorder.parameter("height", "height", 0.5, 2.0)
     recorder.extrude(recorder.faces_towards(_component(recorder), (0, 0, 1))[0], 1.0, length="height")
-    compiled = recorder.build().compile()
+    compiled = compile_model(recorder.build())
     values = compiled.random_values(np.random.default_rng(0), 11)
     whole = compiled.surface_points(values, steps)
     controls = compiled.control_points(values)
@@ -97,8 +97,8 @@ def test_a_surface_of_too_many_weights_or_vertices_is_refused(monkeypatch: pytes
     many_corners = Recorder("corners", "corners")
     many_corners.base("prism", (1, 1, 1), sides=100)
     with pytest.raises(ModelError, match="corners"):
-        many_corners.build().compile().surface_polygons(1)
-    compiled = cube().build().compile()
+        compile_model(many_corners.build()).surface_polygons(1)
+    compiled = compile_model(cube().build())
     assert compiled.surface_polygons(3).n_vertices == 386
     with pytest.raises(ModelError, match="more than 1000 vertices after 4"):
         compiled.surface_polygons(4)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shapewright.errors import ModelError
-from shapewright.modeling import ProceduralModel, Recorder
+from shapewright.modeling import ProceduralModel, Recorder, compile_model
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.elements import edge, face, vertex
 from shapewright.modeling.upgrade import FORMAT, VERSION
@@ -64,7 +64,7 @@ def test_a_component_that_is_not_there_cannot_be_removed() -> None:
     for number, component in enumerate(["c7", "c0"]):
         operations = [BOX, BOX, *[remove] * number, {"op": "remove", "elements": [component]}]
         with pytest.raises(ModelError, match=component) as caught:
-            model(*operations).compile()
+            compile_model(model(*operations))
         assert caught.value.where == f"operations[{2 + number}]"
 
 
@@ -119,14 +119,14 @@ def test_a_refused_operation_in_the_middle_of_its_work_leaves_no_trace() -> None
 )
 def test_a_small_document_cannot_ask_for_endless_work(operations: list[dict[str, object]], message: str) -> None:
     with pytest.raises(ModelError, match=message) as caught:
-        model(*operations).compile()
+        compile_model(model(*operations))
     assert caught.value.where is not None
     assert caught.value.where.startswith("operations[")
 
 
 def test_an_element_named_many_times_counts_once() -> None:
     drag = {"op": "drag", "z": 1, "targets": [{"elements": ["c0"] * 50_000, "frame": "world"}]}
-    points = model(LARGE_RING, drag).compile().control_points(np.ones((1, 0)))[0]
+    points = compile_model(model(LARGE_RING, drag)).control_points(np.ones((1, 0)))[0]
     assert points[:, 2].mean() == pytest.approx(1.0)
 
 

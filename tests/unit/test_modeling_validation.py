@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from shapewright.modeling import CompiledModel, ProceduralModel, Recorder, group, variation_checks, when
+from shapewright.modeling import CompiledModel, ProceduralModel, Recorder, compile_model, group, variation_checks, when
 from shapewright.modeling.contexts import active_row, distinct_values
 from shapewright.modeling.validation import (
     CHECKS,
@@ -109,7 +109,7 @@ class RoundingModel(ProceduralModel):
 def test_what_writing_loses_is_found(kind: type[ProceduralModel], lost: str) -> None:
     model = post().build()
     bad = kind(model.name, model.class_name, model.operations, model.parameters)
-    assert lost in " ".join(replay_faults(bad.compile(), np.ones((1, 1))))
+    assert lost in " ".join(replay_faults(compile_model(bad), np.ones((1, 1))))
 
 
 def test_a_document_that_is_not_canonical_is_found_if_it_must_be() -> None:
@@ -145,7 +145,7 @@ def leaning(low: float = 0.5, **symmetry: Any) -> CompiledModel:
     box = recorder.box(1.0, 1.0, 1.0)
     recorder.drag(group(box.top, frame="world"), rho=0.2, sideways="lean")
     recorder.symmetry(**symmetry)
-    return recorder.build().compile()
+    return compile_model(recorder.build())
 
 
 def test_a_declared_symmetry_that_does_not_hold_is_found() -> None:
@@ -180,10 +180,10 @@ def test_components_apart_and_absent_parts_are_left_out() -> None:
     recorder.symmetry(mirrors="y")
     bad = recorder.build()
     without, with_lamp = np.array([[0.0]]), np.array([[1.0]])
-    assert symmetry_faults(bad.compile(), without) == []
-    assert "c1 is off" in symmetry_faults(bad.compile(), with_lamp)[0][1]
+    assert symmetry_faults(compile_model(bad), without) == []
+    assert "c1 is off" in symmetry_faults(compile_model(bad), with_lamp)[0][1]
     recorder.symmetry(mirrors="y", apart=[lamp])
-    assert symmetry_faults(recorder.build().compile(), with_lamp) == []
+    assert symmetry_faults(compile_model(recorder.build()), with_lamp) == []
 
 
 # ---------------------------------------------------------------------- variations
@@ -247,7 +247,7 @@ def test_floating_clusters_are_told_by_component_however_few_pairs_fit_into_memo
     recorder = Recorder("clusters", "box")
     for x in (0.0, 0.9, 1.8, 2.7, 5.0, 5.9, 9.0):
         recorder.box(1.0, 1.0, 1.0, offset=(x, 0.0, 0.0))
-    compiled = recorder.build().compile()
+    compiled = compile_model(recorder.build())
     found = check_variations(compiled, np.ones((1, 0)))
     assert [(fault.check, fault.where) for fault in found] == [
         ("together", "component c4"), ("together", "component c5"), ("together", "component c6")
@@ -302,7 +302,7 @@ def test_a_parameter_that_is_never_active_and_parts_that_never_change_are_found(
     recorder.scale(body.whole, 1.0, size="height")
     recorder.part("never", [never], [when("kind", 1.2, 1.8)])
     recorder.part("always", [always], [when("kind", 1, 2)])
-    compiled = recorder.build().compile()
+    compiled = compile_model(recorder.build())
     faults = effect_faults(compiled, compiled.random_values(np.random.default_rng(0), 50))
     assert [place for place, _ in faults] == ["kind", "height", "never", "always"]
 
@@ -316,7 +316,7 @@ def test_a_parameter_is_looked_at_where_it_is_active() -> None:
     knob = recorder.box(0.5, 0.5, 1.2)
     recorder.scale(knob.whole, 1.0, size="size")
     recorder.part("knob", [knob], [when("kind", 2)])
-    space = recorder.build().compile().space
+    space = compile_model(recorder.build()).space
     row = active_row(space, 2)
     assert row is not None
     assert row.tolist() == [2, 1, 1]
@@ -331,7 +331,7 @@ def test_many_conditions_on_one_another_are_settled_in_one_pass() -> None:
         before = f"kind{i - 1}"
         conditions = [when(before, 2), when(before, 1.5, 2.5)] if i else []
         recorder.choice(f"kind{i}", "Kind", ("one", "two", "three"), active_when=conditions)
-    space = recorder.build().compile().space
+    space = compile_model(recorder.build()).space
     row = active_row(space, 59)
     assert row is not None
     assert row.tolist() == [2.0] * 59 + [1.0]
@@ -342,7 +342,7 @@ def test_a_choice_is_moved_to_an_option_within_the_condition() -> None:
     recorder.choice("kind", "Kind", ("one", "two", "three", "four"))
     recorder.switch("knob", "Knob", active_when=[when("kind", 1.5, 2.5)])
     recorder.box(1.0, 1.0, 1.0)
-    space = recorder.build().compile().space
+    space = compile_model(recorder.build()).space
     for start in (1.0, 4.0):
         row = active_row(space, 1, np.array([start, 1.0]))
         assert row is not None

@@ -9,7 +9,7 @@ from simple_shapes import box, goblet, stool
 from small_dataset import rod
 
 from shapewright.errors import RenderingError
-from shapewright.modeling import CompiledModel
+from shapewright.modeling import CompiledModel, compile_model
 from shapewright.rendering import (
     LabelledMesh,
     compose_contact_sheet,
@@ -39,7 +39,7 @@ def sheet_of(compiled: CompiledModel, **options: object) -> np.ndarray:
 
 
 def test_base_both_ends_and_variations_are_there() -> None:
-    compiled = rod().compile()
+    compiled = compile_model(rod())
     sheet = sheet_of(compiled, variations=3)
     base, short, long = pictures(sheet, 3, 4)
     assert differ(short, long)
@@ -51,7 +51,7 @@ def test_base_both_ends_and_variations_are_there() -> None:
 
 
 def test_every_option_is_shown_and_a_parameter_where_it_is_active() -> None:
-    compiled = armchair().compile()
+    compiled = compile_model(armchair())
     cells = pictures(sheet_of(compiled, variations=0), 1 + 3 + 2 + 3 * 2, 4)
     backs, arms, arm_heights = cells[1:4], cells[4:6], cells[8:10]
     assert differ(backs[0], backs[1])
@@ -65,7 +65,7 @@ def test_every_option_is_shown_and_a_parameter_where_it_is_active() -> None:
 
 
 def test_the_same_generator_gives_the_same_sheet() -> None:
-    compiled = rod().compile()
+    compiled = compile_model(rod())
     sheets = [sheet_of(compiled, variations=2, rng=np.random.default_rng(seed)) for seed in (1, 1, 2)]
     np.testing.assert_array_equal(sheets[0], sheets[1])
     assert (sheets[0] != sheets[2]).any()
@@ -73,15 +73,15 @@ def test_the_same_generator_gives_the_same_sheet() -> None:
 
 def test_a_sheet_that_is_too_large_is_refused_before_it_is_drawn() -> None:
     with pytest.raises(RenderingError, match="16384"):
-        compose_contact_sheet(rod().compile(), variations=1000, size=500)
+        compose_contact_sheet(compile_model(rod()), variations=1000, size=500)
 
 
 def test_texts_of_strangers_fit_on_their_line() -> None:
     model = rod()
-    plain = sheet_of(model.compile(), variations=0)
+    plain = sheet_of(compile_model(model), variations=0)
     for label in ("Le\nng\r\nth", "Length " * 28, "\t\u200b", "W" * 200):
         (length,) = model.parameters
-        sheet = sheet_of(replace(model, parameters=(replace(length, label=label),)).compile(), variations=0)
+        sheet = sheet_of(compile_model(replace(model, parameters=(replace(length, label=label),))), variations=0)
         assert sheet.shape == plain.shape
 
 

@@ -17,7 +17,7 @@ from models_store import catalog
 from service.compiled_models import CompiledModels, InstanceGenerator
 from shapewright.mesh import TriangleMesh
 from shapewright.mesh.file import parse_mesh
-from shapewright.modeling import ProceduralModel
+from shapewright.modeling import ProceduralModel, compile_model
 
 __all__ = ["service", "shared_service"]
 
@@ -81,7 +81,7 @@ def test_the_thumbnail_comes_with_its_job_and_is_cached(service: LiveService) ->
 
 def test_an_instance_is_what_the_library_makes(shared_service: LiveService) -> None:
     model = shared_service.add_model()
-    compiled = ProceduralModel.from_document(box()).compile()
+    compiled = compile_model(ProceduralModel.from_document(box()))
     for body, values in (
         ({}, [1.0, 1.0]),
         ({"values": {"neck_size": 1.5}}, [1.0, 1.5]),
@@ -131,7 +131,7 @@ def test_a_model_tells_what_depends_on_what(service: LiveService) -> None:
 
 def test_values_are_settled_before_an_instance_is_made(shared_service: LiveService) -> None:
     model = shared_service.add_document(json.loads(armchair().to_json()))
-    compiled = armchair().compile()
+    compiled = compile_model(armchair())
 
     def made(**body: Any) -> tuple[dict[str, float], TriangleMesh]:
         response = instance(shared_service, model["id"], **body)

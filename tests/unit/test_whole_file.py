@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from shapewright.modeling import Recorder
+from shapewright.modeling import Recorder, compile_model
 from shapewright.whole_file import write_whole
 
 
@@ -42,7 +42,7 @@ def test_meshes_and_models_are_written_whole(tmp_path: Path) -> None:
         with pytest.raises(OSError, match="too large"):
             model.save(tmp_path / "brick.json")
         with pytest.raises(OSError, match="too large"):
-            model.compile().instance(np.ones(0)).save(tmp_path / "brick.off")
+            compile_model(model).instance(np.ones(0)).save(tmp_path / "brick.off")
     assert list(tmp_path.iterdir()) == []
 
 

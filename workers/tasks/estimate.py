@@ -39,8 +39,9 @@ def _with_model(
     from shapewright.estimation import BankCancelled, EstimationCancelled
     from shapewright.estimation import estimate as find
     from shapewright.estimation.estimate import nearest
+    from shapewright.modeling import compile_model
 
-    compiled = context.load_model(model_id).compile()
+    compiled = compile_model(context.load_model(model_id))
     progress = PartialProgress(context.progress, 0.0, 1.0)
     try:
         bank = stored_bank(context, compiled, settings)
@@ -63,11 +64,12 @@ def _with_class(
     context: JobContext, identifier: str, query: "TriangleMesh", model_ids: list[str], settings: "EstimationSettings"
 ) -> Outcome:
     from shapewright.estimation import ClassEstimationCancelled, estimate_class
+    from shapewright.modeling import compile_model
 
     def bank_of(compiled: "InstanceGenerator", progress: Progress) -> "PanoramaBank":
         return stored_bank(context, compiled, settings) or new_bank(context, compiled, settings, progress)
 
-    generators = [context.load_model(model_id).compile() for model_id in model_ids]
+    generators = [compile_model(context.load_model(model_id)) for model_id in model_ids]
     try:
         best = estimate_class(query, generators, settings, progress=context.progress, bank_of=bank_of)
         cancelled = False

@@ -15,10 +15,11 @@ def render_thumbnail(context: JobContext) -> Outcome:
     """Render the model with all parameters at their base values and keep the picture as PNG."""
     from PIL import Image
 
+    from shapewright.modeling import compile_model
     from shapewright.rendering import render_mesh, three_quarter_view
 
     model_id = str(context.claim.payload["model_id"])
-    compiled = context.load_model(model_id).compile()
+    compiled = compile_model(context.load_model(model_id))
     context.progress.report(0.3, "drawing")
     mesh = compiled.instance(compiled.base_values(), steps=SUBDIVISION_STEPS)
     png = BytesIO()

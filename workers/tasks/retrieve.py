@@ -87,12 +87,14 @@ def _query(
 
 def _models(context: JobContext, row: RetrievalRow, collection: CollectionRow) -> "list[CompiledModel]":
     """The model that is asked for, or those of the class that the classifier has learned from."""
+    from shapewright.modeling import compile_model
+
     if row.model_id is not None:
-        return [context.load_model(row.model_id).compile()]
+        return [compile_model(context.load_model(row.model_id))]
     with context.database.reading() as session:
         model_ids = catalog.get_classifier(session, collection.classifier_id).model_ids
         of_class = [one for one in model_ids if catalog.get_model(session, one).class_name == row.class_name]
-    return [context.load_model(model_id).compile() for model_id in of_class]
+    return [compile_model(context.load_model(model_id)) for model_id in of_class]
 
 
 def _exemplars(
