@@ -110,7 +110,7 @@ def score_rotations(query, model, rotations, scores):
 
 @njit(cache=True, nogil=True)
 @no_type_check
-def align_by_closest_points(query, model, rotation, translation, scale, rounds):
+def align_by_closest_points(query, model, rotation, translation, scale, rounds, keeps_scale):
     """Refine a similarity by closest points, both ways, weighted against far pairs.
 
     Args:
@@ -118,6 +118,7 @@ def align_by_closest_points(query, model, rotation, translation, scale, rounds):
         model: (M, 3) float64.
         rotation, translation, scale: where to begin.
         rounds: at most.
+        keeps_scale: whether the scale stays as it is.
 
     Returns:
         rotation, translation, scale, mean distance of the last pairs.
@@ -187,7 +188,8 @@ def align_by_closest_points(query, model, rotation, translation, scale, rounds):
             left[:, 2] = -left[:, 2]
             singular[2] = -singular[2]
         rotation = np.ascontiguousarray(left) @ np.ascontiguousarray(right)
-        scale = (singular[0] + singular[1] + singular[2]) / spread
+        if not keeps_scale:
+            scale = (singular[0] + singular[1] + singular[2]) / spread
         for d in range(3):
             translation[d] = query_mean[d] - scale * (
                 rotation[d, 0] * model_mean[0] + rotation[d, 1] * model_mean[1] + rotation[d, 2] * model_mean[2]
