@@ -3,8 +3,6 @@
 import threading
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -12,12 +10,11 @@ from jaxtyping import Bool, Float, Int
 from shapewright.errors import ModelError, ParameterError
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling.control_mesh import ControlMesh
-from shapewright.modeling.frames import Positions
-from shapewright.modeling.operations import Operation
-from shapewright.modeling.operations.operation import Quantities, Step
+from shapewright.modeling.executable import link
 from shapewright.modeling.parameter_space import ParameterSpace, Values
 from shapewright.modeling.part import ALWAYS, PartVertices
 from shapewright.modeling.procedural_model import ProceduralModel
+from shapewright.modeling.program import Change, Program
 from shapewright.modeling.subdivision import Polygons, SubdivisionStep, subdivide
 
 SUBDIVISION_STEPS = 2
@@ -27,29 +24,6 @@ MAX_SURFACE_VERTICES = 1_000_000
 MAX_SURFACE_WEIGHTS = 10_000_000
 """Bound on the entries of a subdivision matrix; a face of n corners makes about n x n of them."""
 _CHUNK_BYTES = 64 * 2**20
-
-
-@dataclass(frozen=True)
-class _BoundStep:
-    """The step of one operation and the parameters (column, mode) that change its quantities."""
-
-    step: Step
-    operation: Operation
-    bindings: tuple[tuple[int, str], ...]
-
-    @cached_property
-    def _of_one(self) -> Quantities:
-        """The quantities without parameters, for the instance that a slider asks for: no copies are needed."""
-        return self._constant(1)
-
-    def _constant(self, count: int) -> Quantities:
-        return {name: np.full(count, float(getattr(self.operation, name))) for name in self.operation.quantities}
-
-    def quantities(self, values: Values) -> Quantities:
-        amounts = self._of_one if len(values) == 1 else self._constant(len(values))
-        for column, mode in self.bindings:
-            amounts = self.operation.modes[mode](amounts, values[:, column])
-        return amounts
 
 
 class CompiledModel:
@@ -64,31 +38,27 @@ class CompiledModel:
         self.model = model
         self.space = ParameterSpace(model.parameters)
         mesh = ControlMesh()
-        steps = []
-        bindings: dict[int, list[tuple[int, str]]] = defaultdict(list)
+        program = Program()
+        changes: dict[int, list[tuple[Change, int]]] = defaultdict(list)
         for column, parameter in enumerate(model.parameters):
             for target in parameter.targets:
-                bindings[target.operation].append((column, target.mode))
-        most_work = 0
+                mode = model.operations[target.operation].modes[target.mode]
+                changes[target.operation] += [(change, column) for change in mode]
         for index, operation in enumerate(model.operations):
-            work_before = mesh.work
             try:
-                steps.append(_BoundStep(operation.apply(mesh), operation, tuple(bindings[index])))
+                step = operation.apply(mesh)
             except ModelError as error:
                 raise ModelError(error.message, where=f"operations[{index}]") from None
-            most_work = max(most_work, mesh.work - work_before)
+            program.begin_operation()
+            step.write(program, changes[index])
         self._parts = PartVertices(mesh, model.parts)
         for component in model.symmetry.apart:
             if component.id >= mesh.n_components:
                 raise ModelError(f"component {component} does not exist", where="symmetry.apart")
-        fixed, self._steps = _split(steps)
-        self._n_created = mesh.n_vertices
-        self._start = np.zeros((self._n_created, 3, 1))
-        """What every instance begins with: the outcome of the steps that no parameter has a say in."""
-        for bound in fixed:
-            bound.step.move(self._start, bound.quantities(self.base_values()[None]))
-        self._row_bytes = 24 * max(mesh.n_vertices, most_work)  # of one instance, while a step is at work
+        program.begin_operation()
+        self._parts.write(program)
         self._live = np.array(mesh.live_vertices(), dtype=np.int64)
+        self._executable = link(program, self._parts.part_of, self._live)
         self._control = _compact(mesh, self._live)
         self.is_closed = mesh.is_closed()
         self.control_components: Int[np.ndarray, " V"] = np.array([mesh.component_of(int(v)) for v in self._live])
@@ -161,11 +131,7 @@ class CompiledModel:
         Raises:
             ParameterError: the array has not P columns or holds NaN.
         """
-        values = self._settled(values)
-        points = np.empty((len(values), len(self._live), 3))
-        for rows in self._batches(len(values), self._row_bytes):
-            points[rows] = self._control_rows(values[rows]).transpose(2, 0, 1)
-        return points
+        return self._control_rows(self._settled(values))
 
     def surface_points(
         self, values: Float[np.ndarray, "B P"], steps: int = SUBDIVISION_STEPS
@@ -197,10 +163,10 @@ class CompiledModel:
 
     def _surface_chunks(self, values: Values, steps: int) -> Iterator[tuple[int, Float[np.ndarray, "C V 3"]]]:
         n_vertices = self.surface_polygons(steps).n_vertices
-        for rows in self._batches(len(values), max(24 * n_vertices, self._row_bytes)):
+        for rows in self._batches(len(values), 24 * n_vertices):
             controls = self._control_rows(values[rows])
-            count = controls.shape[2]
-            flat = controls.reshape(-1, 3 * count)
+            count = len(controls)
+            flat = controls.transpose(1, 2, 0).reshape(-1, 3 * count)
             for level in self._levels[:steps]:
                 flat = level.matrix @ flat
             yield rows.start, np.ascontiguousarray(flat.reshape(-1, 3, count).transpose(2, 0, 1))
@@ -270,13 +236,8 @@ class CompiledModel:
         size = max(1, _CHUNK_BYTES // row_bytes)
         return (slice(start, start + size) for start in range(0, count, size))
 
-    def _control_rows(self, values: Values) -> Positions:
-        positions = np.repeat(self._start, len(values), axis=2)
-        for bound in self._steps:
-            bound.step.move(positions, bound.quantities(values))
-        if self.model.parts:
-            self._parts.collapse(positions, self._present(values))
-        return positions[self._live]
+    def _control_rows(self, settled: Values) -> Float[np.ndarray, "B V 3"]:
+        return self._executable.run(settled, self._present(settled))
 
     def _present(self, settled: Values) -> Bool[np.ndarray, "B N"]:
         return self.space.holds_each([part.present_when for part in self.model.parts], settled)
@@ -300,26 +261,6 @@ def compile_model(model: ProceduralModel) -> CompiledModel:
     if model.closed and not compiled.is_closed:
         raise ModelError("the model says that it is closed, but its mesh has open edges", where="closed")
     return compiled
-
-
-def _split(steps: list[_BoundStep]) -> tuple[tuple[_BoundStep, ...], tuple[_BoundStep, ...]]:
-    """Tell steps that are the same for every instance, and can be done before the others, from the others.
-
-    Such a step has no parameter, reads nothing that one of the others before it wrote, and writes nothing that one of
-    them wrote or read.
-    """
-    fixed, varying = [], []
-    read: set[int] = set()
-    written: set[int] = set()
-    for bound in steps:
-        reads, writes = bound.step.reads(), bound.step.writes()
-        if not bound.bindings and written.isdisjoint(reads | writes) and read.isdisjoint(writes):
-            fixed.append(bound)
-        else:
-            varying.append(bound)
-            read |= reads
-            written |= writes
-    return tuple(fixed), tuple(varying)
 
 
 def _compact(mesh: ControlMesh, live: Int[np.ndarray, " V"]) -> Polygons:

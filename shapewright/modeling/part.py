@@ -5,14 +5,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from jaxtyping import Bool, Int
+from jaxtyping import Int
 
 from shapewright.errors import ModelError
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.dependence import CONDITIONS_SCHEMA, Condition, read_conditions
 from shapewright.modeling.elements import Element
 from shapewright.modeling.fields import ELEMENTS, read_object
-from shapewright.modeling.frames import Centres, Positions
+from shapewright.modeling.opcodes import COLLAPSE
+from shapewright.modeling.program import Program
 
 MAX_PARTS = 200
 MAX_PART_NAME = 200
@@ -111,19 +112,20 @@ class PartVertices:
                 raise ModelError("a face connects it with what is not part of it", where=f"parts[{max(mixed)}]")
         self.part_of: Int[np.ndarray, " N"] = np.array(of_vertex, dtype=np.int64)
         self._vertices = [np.flatnonzero(self.part_of == number) for number in range(len(parts))]
+        self._home: list[int] = []
         if parts:
             homes = [c for c in range(mesh.n_components) if component_parts[c] == ALWAYS]
             home = next((vertices for c in homes if (vertices := mesh.vertices_of_component(c))), None)
             if home is None:
                 raise ModelError("at least one component must belong to no part", where="parts")
-            self._home = Centres([home])
+            self._home = home
 
-    def collapse(self, positions: Positions, present: Bool[np.ndarray, "B N"]) -> None:
-        """Draw the vertices of absent parts together in the middle of a component that is always present.
+    def write(self, program: Program) -> None:
+        """Write instructions that draw absent parts together in the middle of a component that is always present.
 
         There they have no area and change no extent, so that all instances of a batch can share one topology.
         """
-        for number, vertices in enumerate(self._vertices):
-            absent = np.flatnonzero(~present[:, number])
-            if len(absent):
-                positions[vertices[:, None], :, absent] = self._home.evaluate(positions[:, :, absent])[0].T
+        if self._vertices:
+            middle = program.mean(self._home)
+            for number, vertices in enumerate(self._vertices):
+                program.add(COLLAPSE, middle, vertices.tolist(), (number,), part=number)

@@ -17,7 +17,8 @@ from shapewright.modeling.component import Component
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.declarations import Declarations
 from shapewright.modeling.elements import Element, Target, edge, face
-from shapewright.modeling.frames import TargetFrames, frame_of_element
+from shapewright.modeling.executable import carry_out
+from shapewright.modeling.frames import frame_of_element, write_frame
 from shapewright.modeling.operations import (
     OPERATIONS,
     Base,
@@ -34,6 +35,7 @@ from shapewright.modeling.operations import (
 )
 from shapewright.modeling.parameter import ParameterTarget
 from shapewright.modeling.procedural_model import ProceduralModel
+from shapewright.modeling.program import Program
 
 Selection = Element | Target | Sequence[Element | Target]
 Vector = tuple[float, float, float]
@@ -56,7 +58,7 @@ class Recorder(Declarations):
         self.description = description
         self.closed = closed
         self.mesh = ControlMesh()
-        self._positions: Float[np.ndarray, "V 3 1"] = np.zeros((0, 3, 1))
+        self._positions: Float[np.ndarray, "V 3"] = np.zeros((0, 3))
         self._operations: list[Operation] = []
         self._targets: dict[str, list[ParameterTarget]] = {}
 
@@ -205,7 +207,7 @@ class Recorder(Declarations):
 
     def positions(self, element: Element) -> Float[np.ndarray, "N 3"]:
         """Return where the vertices of an element are now."""
-        return self._positions[self.mesh.vertices_of([element]), :, 0]
+        return self._positions[self.mesh.vertices_of([element])]
 
     def centre(self, element: Element) -> Float[np.ndarray, "3"]:
         """Return the mean of the vertices of an element."""
@@ -219,10 +221,9 @@ class Recorder(Declarations):
 
     def frame(self, element: Element) -> Float[np.ndarray, "3 3"]:
         """Return the local frame of an element with u, v and z as columns."""
-        frame: Float[np.ndarray, "3 3"] = TargetFrames([frame_of_element(self.mesh, element)]).evaluate(
-            self._positions
-        )[0, :, :, 0]
-        return frame
+        program = Program()
+        write_frame(program, frame_of_element(self.mesh, element))
+        return carry_out(program, self._positions)[-3:].T
 
     def edges_of(self, element: Element) -> list[Element]:
         """Return the edges of a face, in the order of its loop."""
@@ -298,20 +299,18 @@ class Recorder(Declarations):
         except ModelError as error:
             self.mesh = _replayed(self._operations)  # a refused operation leaves everything as it was
             raise ModelError(error.message, where=f"operations[{index}] ({operation.kind})") from None
-        grown = np.zeros((self.mesh.n_vertices, 3, 1))
+        grown = np.zeros((self.mesh.n_vertices, 3))
         grown[: len(self._positions)] = self._positions
-        self._positions = grown
-        step.move(
-            self._positions,
-            {name: np.array([float(getattr(operation, name))]) for name in operation.quantities},
-        )
+        program = Program()
+        step.write(program, ())
+        self._positions = carry_out(program, grown)[: len(grown)]
         self._operations.append(operation)
         for mode, name in varies.items():
             self._targets.setdefault(name, []).append(ParameterTarget(index, mode))
 
     def _best_shift(self, first: Element, second: Element) -> int:
-        outline = self._positions[list(self.mesh.face(first.id)), :, 0]
-        facing = self._positions[list(self.mesh.face(second.id))[::-1], :, 0]
+        outline = self._positions[list(self.mesh.face(first.id))]
+        facing = self._positions[list(self.mesh.face(second.id))[::-1]]
         if len(outline) != len(facing):
             return 0
         lengths = [

@@ -6,6 +6,9 @@ import pytest
 from shapewright.errors import ModelError
 from shapewright.modeling import CompiledModel, Recorder, Target, compile_model, imaged, mirrored, turned
 from shapewright.modeling.elements import Element, Mirror, Turn, edge, face, image_matrix, vertex
+from shapewright.modeling.operations.operation import Mode
+from shapewright.modeling.program import Program, SlottedQuantities
+from shapewright.modeling.program_kernels import WIDTH, fill_slots
 
 
 def cube() -> Recorder:
@@ -229,6 +232,16 @@ def test_a_mirrored_component_faces_outwards() -> None:
     assert np.linalg.det(image_matrix(image)) == pytest.approx(-1.0)
 
 
+def changed(amounts: dict[str, float], mode: Mode, x: float) -> dict[str, float]:
+    """Return what a parameter x makes of the quantities of an operation."""
+    program = Program()
+    SlottedQuantities(program, amounts, [(change, 0) for change in mode])
+    slots = np.array(program.slots)
+    lanes = np.repeat(slots, WIDTH)
+    fill_slots(lanes, slots, np.array(program.changes), np.zeros((0, 2), dtype=np.int64), np.array([[x]]), 0)
+    return dict(zip(amounts, lanes[::WIDTH].tolist(), strict=True))
+
+
 @pytest.mark.parametrize(
     ("kind", "mode", "x", "expected"),
     [
@@ -247,21 +260,18 @@ def test_modes_are_those_of_table_1(kind: str, mode: str, x: float, expected: di
 
     start = {"rho": 0.3, "phi_deg": 30.0, "z": 0.5, "width": 0.8, "length": 0.5}
     start |= {"lambda1": 0.4, "sigma": 0.6, "alpha_deg": 40.0}
-    operation = OPERATIONS[kind]
-    amounts = {name: np.array([start[name]]) for name in operation.quantities}
-    changed = operation.modes[mode](amounts, np.array([x]))
-    assert {name: float(value[0]) for name, value in changed.items()} == pytest.approx(expected)
-    unchanged = operation.modes[mode](amounts, np.array([1.0]))
-    assert {n: float(v[0]) for n, v in unchanged.items()} == pytest.approx({n: start[n] for n in operation.quantities})
+    amounts = {name: start[name] for name in OPERATIONS[kind].quantities}
+    assert changed(amounts, OPERATIONS[kind].modes[mode], x) == pytest.approx(expected)
+    assert changed(amounts, OPERATIONS[kind].modes[mode], 1.0) == pytest.approx(amounts)
 
 
 def test_a_vertex_beyond_the_middle_slides_as_the_mirror_image() -> None:
     from shapewright.modeling.operations import InsertVertex
 
     slide = InsertVertex.modes["position"]
-    below = slide({"lambda1": np.array([0.3])}, np.array([0.4]))["lambda1"]
-    above = slide({"lambda1": np.array([0.7])}, np.array([1.6]))["lambda1"]
-    np.testing.assert_allclose(above, 1.0 - below)
+    below = changed({"lambda1": 0.3}, slide, 0.4)["lambda1"]
+    above = changed({"lambda1": 0.7}, slide, 1.6)["lambda1"]
+    assert above == pytest.approx(1.0 - below)
 
 
 def test_a_refused_operation_leaves_the_recorder_as_it_was() -> None:

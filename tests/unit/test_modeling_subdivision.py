@@ -83,7 +83,7 @@ def test_chunks_make_up_the_batch(steps: int, monkeypatch: pytest.MonkeyPatch) -
     values = compiled.random_values(np.random.default_rng(0), 11)
     whole = compiled.surface_points(values, steps)
     controls = compiled.control_points(values)
-    monkeypatch.setattr("shapewright.modeling.compiled._CHUNK_BYTES", 60_000)
+    monkeypatch.setattr("shapewright.modeling.compiled._CHUNK_BYTES", 3 * whole[0].nbytes)
     chunks = list(compiled.surface_chunks(values, steps))
     assert 3 <= len(chunks) <= 6
     assert [start for start, _ in chunks] == np.cumsum([0, *(len(points) for _, points in chunks)])[:-1].tolist()

@@ -10,9 +10,11 @@ from shapewright.errors import ModelError
 from shapewright.modeling.control_mesh import ControlMesh, Loop
 from shapewright.modeling.elements import Target, image_matrix
 from shapewright.modeling.fields import TARGETS, VECTOR, choice, field, integer
-from shapewright.modeling.frames import Centres, Positions, TargetFrames, frames_of_targets
-from shapewright.modeling.operations.operation import Operation, Quantities, Step
+from shapewright.modeling.frames import TargetFrames, frames_of_targets
+from shapewright.modeling.opcodes import PLACE
+from shapewright.modeling.operations.operation import Operation, Step
 from shapewright.modeling.operations.selection import refuse_pivots
+from shapewright.modeling.program import Changes, Program
 
 MAX_SIDES = 256
 
@@ -56,8 +58,6 @@ class Base(Operation):
         frames = frames_of_targets(mesh, anchors)
         origins = [mesh.vertices_of(anchor.elements) for anchor in anchors]
         mesh.spend(sum(map(len, origins)))
-        placed = [i for i, origin in enumerate(origins) if origin]
-        centres = Centres([origins[i] for i in placed])
         points, loops = self._shape()
         first_vertex = mesh.n_vertices
         for anchor in anchors:
@@ -67,7 +67,7 @@ class Base(Operation):
             for loop in loops:
                 corner_ids = [ids[corner] for corner in loop]
                 mesh.add_face(corner_ids[:1] + corner_ids[:0:-1] if mirrored else corner_ids)
-        return _PlaceBase(points + np.array(self.offset), first_vertex, frames, tuple(placed), centres)
+        return _Placed(points + np.array(self.offset), first_vertex, frames, tuple(origins))
 
     def _shape(self) -> tuple[Float[np.ndarray, "N 3"], list[Loop]]:
         x, y, z = self.size
@@ -84,27 +84,21 @@ class Base(Operation):
 
 
 @dataclass(frozen=True, eq=False)
-class _PlaceBase:
-    """Copies of the points, one for each frame; those in ``placed`` around centres, the others around the origin."""
+class _Placed:
+    """Copies of the points, one for each frame, around the mean of its origin's vertices, if it has any."""
 
     points: Float[np.ndarray, "N 3"]
     first_vertex: int
     frames: TargetFrames
-    placed: tuple[int, ...]
-    centres: Centres
+    origins: tuple[list[int], ...]
 
-    def reads(self) -> set[int]:
-        return self.frames.vertices() | self.centres.vertices()
-
-    def writes(self) -> set[int]:
-        return set(range(self.first_vertex, self.first_vertex + self.frames.count * len(self.points)))
-
-    def move(self, positions: Positions, quantities: Quantities) -> None:
-        copies = np.einsum("tijb,nj->tnib", self.frames.evaluate(positions), self.points)
-        if self.placed:
-            copies[list(self.placed)] += self.centres.evaluate(positions)[:, None]
-        rows = copies.reshape(-1, *positions.shape[1:])
-        positions[self.first_vertex : self.first_vertex + len(rows)] = rows
+    def write(self, program: Program, changes: Changes) -> None:
+        n_points = len(self.points)
+        numbers = (program.keep(self.points.ravel().tolist()),)
+        centres = [program.mean(origin) if origin else () for origin in self.origins]
+        for i, (frame, centre) in enumerate(zip(self.frames.write(program), centres, strict=True)):
+            first = self.first_vertex + i * n_points
+            program.add(PLACE, (*frame, *centre), range(first, first + n_points), numbers, fresh=True)
 
 
 def _prism(corners: Float[np.ndarray, "N 2"], height: float) -> tuple[Float[np.ndarray, "M 3"], list[Loop]]:

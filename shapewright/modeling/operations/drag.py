@@ -4,10 +4,11 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from shapewright.modeling.control_mesh import ControlMesh
-from shapewright.modeling.frames import Positions
-from shapewright.modeling.operations.displacement import Displacement, displacement
-from shapewright.modeling.operations.operation import Quantities, Step
+from shapewright.modeling.opcodes import DRAG
+from shapewright.modeling.operations.displacement import Displacement
+from shapewright.modeling.operations.operation import Step
 from shapewright.modeling.operations.selection import MovedTargets, moved_targets
+from shapewright.modeling.program import Changes, Program
 
 
 @dataclass(frozen=True)
@@ -18,20 +19,18 @@ class Drag(Displacement):
 
     def apply(self, mesh: ControlMesh) -> Step:
         """Change no topology; return the motion."""
-        return _Dragged(moved_targets(mesh, self.targets))
+        return _Dragged(self, moved_targets(mesh, self.targets))
 
 
 @dataclass(frozen=True)
 class _Dragged:
+    operation: Drag
     targets: MovedTargets
 
-    def reads(self) -> set[int]:
-        return self.targets.reads()
-
-    def writes(self) -> set[int]:
-        return self.targets.writes()
-
-    def move(self, positions: Positions, quantities: Quantities) -> None:
-        ways = displacement(self.targets.frames.evaluate(positions), quantities)
-        for run in self.targets.runs:
-            positions[run.vertices] += ways if len(ways) == 1 else ways[run.targets]
+    def write(self, program: Program, changes: Changes) -> None:
+        quantities = self.operation.displaced(program, changes)
+        if quantities.always("rho", 0.0) and quantities.always("z", 0.0):
+            return
+        frames = self.targets.frames.write(program)
+        for frame, vertices in zip(frames, self.targets.moved, strict=True):
+            program.add(DRAG, frame, vertices, quantities=quantities)

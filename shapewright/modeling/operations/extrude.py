@@ -3,15 +3,14 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-from jaxtyping import Int
-
 from shapewright.errors import ModelError
 from shapewright.modeling.control_mesh import ControlMesh, Loop
 from shapewright.modeling.elements import Element, Target
-from shapewright.modeling.frames import Positions, TargetFrames, frames_of_targets
-from shapewright.modeling.operations.displacement import Displacement, displacement
-from shapewright.modeling.operations.operation import Quantities, Step
+from shapewright.modeling.frames import TargetFrames, frames_of_targets
+from shapewright.modeling.opcodes import EXTRUDE
+from shapewright.modeling.operations.displacement import Displacement
+from shapewright.modeling.operations.operation import Step
+from shapewright.modeling.program import Changes, Program
 
 
 @dataclass(frozen=True)
@@ -33,32 +32,20 @@ class Extrude(Displacement):
         check_each_once(self.targets)
         loops = [single_face(mesh, target) for target in self.targets]
         lifted = [mesh.lift_face(target.elements[0].id) for target in self.targets]
-        return _Extruded(
-            frames,
-            old=np.array([v for loop in loops for v in loop]),
-            new=np.array([v for loop in lifted for v in loop]),
-            targets=np.array([i for i, loop in enumerate(loops) for _ in loop]),
-        )
+        return _Extruded(self, frames, tuple(loops), tuple(lifted))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class _Extruded:
+    operation: Extrude
     frames: TargetFrames
-    old: Int[np.ndarray, " N"]
-    new: Int[np.ndarray, " N"]
-    targets: Int[np.ndarray, " N"]
+    old: tuple[Loop, ...]
+    new: tuple[Loop, ...]
 
-    def reads(self) -> set[int]:
-        return self.frames.vertices() | set(self.old.tolist())
-
-    def writes(self) -> set[int]:
-        return set(self.new.tolist())
-
-    def move(self, positions: Positions, quantities: Quantities) -> None:
-        ways = displacement(self.frames.evaluate(positions), quantities)
-        positions[self.new] = positions.take(self.old, axis=0) + (
-            ways if len(ways) == 1 else ways.take(self.targets, axis=0)
-        )
+    def write(self, program: Program, changes: Changes) -> None:
+        quantities = self.operation.displaced(program, changes)
+        for frame, old, new in zip(self.frames.write(program), self.old, self.new, strict=True):
+            program.add(EXTRUDE, (*frame, *old), new, quantities=quantities, fresh=True)
 
 
 def check_each_once(targets: tuple[Target, ...]) -> None:

@@ -2,51 +2,37 @@
 
 import dataclasses
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any, ClassVar, Protocol, runtime_checkable
-
-import numpy as np
-from jaxtyping import Float
 
 from shapewright.errors import ModelError
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.fields import FieldKind, shown
-from shapewright.modeling.frames import Positions
+from shapewright.modeling.opcodes import MULTIPLY
+from shapewright.modeling.program import Change, Changes, Program
 
-Amounts = Float[np.ndarray, " B"]
-Quantities = Mapping[str, Amounts]
-"""The procedure parameters of an operation (Table 1), one number for each instance of a batch."""
-Mode = Callable[[Quantities, Amounts], Quantities]
-"""How a parameter x changes the procedure parameters; x = 1 changes nothing."""
+Mode = tuple[Change, ...]
+"""How a parameter x changes the procedure parameters of an operation (Table 1); x = 1 changes nothing."""
 
 
 @runtime_checkable
 class Step(Protocol):
     """The geometric half of an operation, bound to the topology in which it was made."""
 
-    def move(self, positions: Positions, quantities: Quantities) -> None:
-        """Set or change rows of ``positions`` (V, 3, B) in place."""
+    def write(self, program: Program, changes: Changes) -> None:
+        """Write the instructions that move vertices.
 
-    def reads(self) -> set[int]:
-        """Return the rows that it looks at."""
-
-    def writes(self) -> set[int]:
-        """Return the rows that it sets or changes."""
+        Args:
+            program: what they are appended to.
+            changes: what parameters do to the quantities of the operation: each change and the parameter's column.
+        """
 
 
 class NoMove:
     """The step of an operation that only changes the topology."""
 
-    def reads(self) -> set[int]:
-        """Return no rows."""
-        return set()
-
-    def writes(self) -> set[int]:
-        """Return no rows."""
-        return set()
-
-    def move(self, positions: Positions, quantities: Quantities) -> None:
-        """Move nothing."""
+    def write(self, program: Program, changes: Changes) -> None:
+        """Write nothing."""
 
 
 NO_MOVE = NoMove()
@@ -73,6 +59,10 @@ class Operation(ABC):
         Raises:
             ModelError: an element does not exist, or the change is impossible there.
         """
+
+    def amounts(self) -> dict[str, float]:
+        """Return the procedure parameters as they are at x = 1."""
+        return {name: float(getattr(self, name)) for name in self.quantities}
 
     @classmethod
     def field_kinds(cls) -> dict[str, FieldKind]:
@@ -122,8 +112,4 @@ class Operation(ABC):
 
 def multiplies(*names: str) -> Mode:
     """Return the mode x times the named quantities."""
-
-    def mode(quantities: Quantities, x: Amounts) -> Quantities:
-        return {**quantities, **{name: quantities[name] * x for name in names}}
-
-    return mode
+    return tuple(Change(name, MULTIPLY) for name in names)

@@ -4,14 +4,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.elements import Element, Target
 from shapewright.modeling.fields import NUMBER, OPTIONAL_ELEMENT, TARGETS, choice, field
-from shapewright.modeling.frames import Positions
-from shapewright.modeling.operations.operation import Mode, Operation, Quantities, Step, multiplies
-from shapewright.modeling.operations.selection import MovedTargets, map_about_pivots, moved_targets
+from shapewright.modeling.opcodes import ROTATE
+from shapewright.modeling.operations.operation import Mode, Operation, Step, multiplies
+from shapewright.modeling.operations.selection import MovedTargets, moved_targets
+from shapewright.modeling.program import Changes, Program, SlottedQuantities
 
 
 @dataclass(frozen=True)
@@ -36,28 +35,19 @@ class Rotate(Operation):
 
     def apply(self, mesh: ControlMesh) -> Step:
         """Change no topology; return the motion."""
-        return _Rotated(moved_targets(mesh, self.targets, self.pivot), "uvz".index(self.axis))
+        return _Rotated(self, moved_targets(mesh, self.targets, self.pivot))
 
 
 @dataclass(frozen=True)
 class _Rotated:
+    operation: Rotate
     targets: MovedTargets
-    axis: int
 
-    def reads(self) -> set[int]:
-        return self.targets.reads()
-
-    def writes(self) -> set[int]:
-        return self.targets.writes()
-
-    def move(self, positions: Positions, quantities: Quantities) -> None:
-        if (quantities["alpha_deg"] == 0.0).all():
+    def write(self, program: Program, changes: Changes) -> None:
+        quantities = SlottedQuantities(program, self.operation.amounts(), changes, angle="alpha_deg")
+        if quantities.always("alpha_deg", 0.0):
             return
-        angle_rad = np.radians(quantities["alpha_deg"])
-        first, second = (self.axis + 1) % 3, (self.axis + 2) % 3
-        turn = np.zeros((3, 3, positions.shape[2]))
-        turn[self.axis, self.axis] = 1.0
-        turn[first, first] = turn[second, second] = np.cos(angle_rad)
-        turn[second, first] = np.sin(angle_rad)
-        turn[first, second] = -turn[second, first]
-        map_about_pivots(positions, self.targets, turn)
+        axis = "uvz".index(self.operation.axis)
+        frames, pivots = self.targets.frames.write(program), self.targets.write_pivots(program)
+        for frame, pivot, vertices in zip(frames, pivots, self.targets.moved, strict=True):
+            program.add(ROTATE, (*pivot, *frame), vertices, (axis,), quantities=quantities)

@@ -11,8 +11,10 @@ from shapewright.errors import ModelError
 from shapewright.modeling.control_mesh import ControlMesh, Loop
 from shapewright.modeling.elements import Element
 from shapewright.modeling.fields import ELEMENT, NUMBER, field
-from shapewright.modeling.frames import Centres, FrameSource, Positions, TargetFrames, frame_of_element
-from shapewright.modeling.operations.operation import Mode, Operation, Quantities, Step, multiplies
+from shapewright.modeling.frames import FrameSource, frame_of_element, write_frame
+from shapewright.modeling.opcodes import BEND
+from shapewright.modeling.operations.operation import Mode, Operation, Step, multiplies
+from shapewright.modeling.program import Changes, Program, SlottedQuantities
 
 
 @dataclass(frozen=True)
@@ -54,32 +56,21 @@ class RotationExtrude(Operation):
             start, end = end, start
         normal_source = frame_of_element(mesh, self.face)
         assert isinstance(normal_source, FrameSource)
-        frame = TargetFrames([FrameSource(normal_source.loops, (start, end))])
-        return _Turned(frame, Centres([list(old)]), old, mesh.lift_face(self.face.id), self.angle_deg)
+        return _Bent(self, FrameSource(normal_source.loops, (start, end)), old, mesh.lift_face(self.face.id))
 
 
 @dataclass(frozen=True)
-class _Turned:
-    frame: TargetFrames
-    centre: Centres
+class _Bent:
+    operation: RotationExtrude
+    frame: FrameSource
     old: Loop
     new: Loop
-    angle_deg: float
 
-    def reads(self) -> set[int]:
-        return self.frame.vertices() | self.centre.vertices() | set(self.old)
-
-    def writes(self) -> set[int]:
-        return set(self.new)
-
-    def move(self, positions: Positions, quantities: Quantities) -> None:
-        frame = self.frame.evaluate(positions)[0]
-        centre = self.centre.evaluate(positions)
-        local = np.einsum("jib,njb->nib", frame, positions[list(self.old)] - centre)
-        local[:, 1] *= quantities["width"]
-        turn = Rotation.from_euler("x", self.angle_deg, degrees=True).as_matrix()
-        normal = np.array([0.0, 0.0, 1.0])
-        mean_normal = normal + turn @ normal
+    def write(self, program: Program, changes: Changes) -> None:
+        quantities = SlottedQuantities(program, self.operation.amounts(), changes)
+        turn = Rotation.from_euler("x", self.operation.angle_deg, degrees=True).as_matrix()
+        mean_normal = np.array([0.0, 0.0, 1.0]) + turn[:, 2]
         mean_normal /= max(float(np.linalg.norm(mean_normal)), 1e-12)
-        moved = np.einsum("ij,njb->nib", turn, local) + mean_normal[:, None] * quantities["length"]
-        positions[list(self.new)] = centre + np.einsum("ijb,njb->nib", frame, moved)
+        numbers = (program.keep([*turn.ravel().tolist(), *mean_normal.tolist()]),)
+        sources = (*write_frame(program, self.frame), *program.mean(self.old), *self.old)
+        program.add(BEND, sources, self.new, numbers, quantities=quantities, fresh=True)

@@ -4,16 +4,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.elements import Element, Target
 from shapewright.modeling.fields import NUMBER, OPTIONAL_ELEMENT, TARGETS, choice, field
-from shapewright.modeling.frames import Positions
-from shapewright.modeling.operations.operation import Mode, Operation, Quantities, Step, multiplies
-from shapewright.modeling.operations.selection import MovedTargets, moved_targets, stretch_about_pivots
+from shapewright.modeling.opcodes import SCALE, STRETCH
+from shapewright.modeling.operations.operation import Mode, Operation, Step, multiplies
+from shapewright.modeling.operations.selection import MovedTargets, moved_targets
+from shapewright.modeling.program import Changes, Program, SlottedQuantities
 
-LOCAL_AXES = {"uvz": (0, 1, 2), "uv": (0, 1), "uz": (0, 2), "vz": (1, 2), "u": (0,), "v": (1,), "z": (2,)}
+LOCAL_AXES = ("uvz", "uv", "uz", "vz", "u", "v", "z")
 
 
 @dataclass(frozen=True)
@@ -38,23 +37,22 @@ class Scale(Operation):
 
     def apply(self, mesh: ControlMesh) -> Step:
         """Change no topology; return the motion."""
-        return _Scaled(moved_targets(mesh, self.targets, self.pivot), LOCAL_AXES[self.axes])
+        return _Scaled(self, moved_targets(mesh, self.targets, self.pivot))
 
 
 @dataclass(frozen=True)
 class _Scaled:
+    operation: Scale
     targets: MovedTargets
-    axes: tuple[int, ...]
 
-    def reads(self) -> set[int]:
-        return self.targets.reads()
-
-    def writes(self) -> set[int]:
-        return self.targets.writes()
-
-    def move(self, positions: Positions, quantities: Quantities) -> None:
-        if (quantities["sigma"] == 1.0).all():  # many proportions are inserted at 1 and stay there
+    def write(self, program: Program, changes: Changes) -> None:
+        quantities = SlottedQuantities(program, self.operation.amounts(), changes)
+        if quantities.always("sigma", 1.0):
             return
-        factors = np.ones((3, positions.shape[2]))
-        factors[list(self.axes)] = quantities["sigma"]
-        stretch_about_pivots(positions, self.targets, factors)
+        pivots, axes = self.targets.write_pivots(program), [int(axis in self.operation.axes) for axis in "uvz"]
+        if all(axes) or self.targets.frames.along_axes:  # it is the same in any frame, or the frame is known
+            for pivot, vertices in zip(pivots, self.targets.moved, strict=True):
+                program.add(STRETCH, pivot, vertices, axes, quantities=quantities)
+            return
+        for frame, pivot, vertices in zip(self.targets.frames.write(program), pivots, self.targets.moved, strict=True):
+            program.add(SCALE, (*pivot, *frame), vertices, axes, quantities=quantities)
