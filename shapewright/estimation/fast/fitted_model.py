@@ -76,7 +76,16 @@ class FittedModel:
         chosen, weights, normals = sample_surface(np.ascontiguousarray(matrix @ control), triangles, count, first_share)
         if len(chosen) == 0:
             return None
-        spread = sparse.csr_array(
-            (weights.ravel(), triangles[chosen].ravel(), np.arange(0, 3 * count + 1, 3)), shape=(count, matrix.shape[0])
-        )
-        return sparse.csr_array(spread @ matrix), normals
+        return barycentric_rows(chosen, weights, triangles, matrix), normals
+
+
+def barycentric_rows(
+    faces: Int[np.ndarray, " N"],
+    weights: Float[np.ndarray, "N 3"],
+    triangles: Int[np.ndarray, "F 3"],
+    matrix: sparse.csr_array,
+) -> sparse.csr_array:
+    """Return the matrix (N, V) that makes barycentric samples of a surface out of control points."""
+    ends = np.arange(0, 3 * len(faces) + 1, 3)
+    spread = sparse.csr_array((weights.ravel(), triangles[faces].ravel(), ends), shape=(len(faces), matrix.shape[0]))
+    return sparse.csr_array(spread @ matrix)

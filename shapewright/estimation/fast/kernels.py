@@ -371,7 +371,7 @@ def pose_jacobian(moves, placed, turn, center, jacobian):
     """Turn derivatives of model-space samples into those of placed ones, and append those of the pose.
 
     Args:
-        moves: (N, 3 D + 3) rows of samples and their derivatives as columns (sample first), in model space.
+        moves: (N, 3 D) derivatives of the samples in model space, x, y and z of the first parameter first.
         placed: (N, 3) samples in query space.
         turn: (3, 3) scale times rotation.
         center: (3,) that rotations and the scale leave in place.
@@ -380,7 +380,7 @@ def pose_jacobian(moves, placed, turn, center, jacobian):
     n_parameters = jacobian.shape[2] - 7
     for i in range(placed.shape[0]):
         for c in range(n_parameters):
-            mx, my, mz = moves[i, 3 * c + 3], moves[i, 3 * c + 4], moves[i, 3 * c + 5]
+            mx, my, mz = moves[i, 3 * c], moves[i, 3 * c + 1], moves[i, 3 * c + 2]
             for a in range(3):
                 jacobian[i, a, c] = turn[a, 0] * mx + turn[a, 1] * my + turn[a, 2] * mz
         x, y, z = placed[i, 0] - center[0], placed[i, 1] - center[1], placed[i, 2] - center[2]

@@ -5,14 +5,18 @@ triangle of the query, every point of the query to the best sample of the instan
 normal counts, and the one along the surface beyond the spacing of the samples; far pairs lose their weight.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
+from scipy import sparse
 from scipy.spatial import cKDTree
 
 from shapewright.estimation.fast import kernels
 from shapewright.estimation.fast.candidate import Candidate, Curvature
+from shapewright.estimation.fast.fitted_model import COARSE, barycentric_rows
+from shapewright.estimation.fast.measure import outline_distance
 from shapewright.estimation.fast.target import SAMPLES, Target
 
 _DIFFERENCE = 1e-4
@@ -40,6 +44,9 @@ class Effort:
         width: of the robust weight; ``None`` follows the median distance.
         damping: relative to the curvature.
         pull: of each measure towards the middle of its range, where nothing else is known.
+        outline: points of the outlines on either side; none if 0.
+        outline_weight: of all of them together; the surfaces have 1.
+        outline_width: of their robust weight.
     """
 
     rounds: int
@@ -49,10 +56,19 @@ class Effort:
     width: float | None = None
     damping: float = 1e-3
     pull: float = 1e-8
+    outline: int = 0
+    outline_weight: float = 10.0
+    outline_width: float = 0.1
 
 
 def fit(
-    target: Target, candidate: Candidate, effort: Effort, *, keeps_scale: bool = False, keeps_rotation: bool = False
+    target: Target,
+    candidate: Candidate,
+    effort: Effort,
+    *,
+    keeps_scale: bool = False,
+    keeps_rotation: bool = False,
+    checkpoint: Callable[[], None] | None = None,
 ) -> Candidate:
     """Move a candidate to where query and instance are nearest to each other.
 
@@ -62,14 +78,17 @@ def fit(
         effort: how to work.
         keeps_scale: whether the scale of the pose stays.
         keeps_rotation: whether its rotation stays.
+        checkpoint: called once a round; may raise to stop.
 
     Returns:
-        The round with the smallest misfit.
+        The best round: the one with the smallest z-buffer distance if outlines pull, else with the smallest misfit.
     """
     best: Candidate | None = None
     samples = None
     curvature = candidate.curvature
     for number in range(effort.rounds + 1):
+        if checkpoint is not None:
+            checkpoint()
         model = candidate.model
         columns, lowest, highest = model.free_columns(candidate.values)
         rows, differences = _rows_around(candidate, columns, highest)
@@ -85,13 +104,15 @@ def fit(
         moves = _product(matrix, controls)
         matches = _match(target, candidate, effort, np.ascontiguousarray(moves[:, :3]), normals)
         candidate = replace(candidate, misfit=matches.misfit, curvature=curvature)
-        if best is None or candidate.misfit < best.misfit:
+        if effort.outline:
+            candidate = outline_distance(target, candidate)
+        if best is None or (candidate.zbuffer, candidate.misfit) < (best.zbuffer, best.misfit):
             best = candidate
         if number == effort.rounds:
             break
-        moves[:, 3:] = (moves[:, 3:].reshape(len(moves), -1, 3) - moves[:, None, :3]).reshape(len(moves), -1)
-        moves[:, 3:] /= np.repeat(differences, 3)
-        system = _normal_equations(target, candidate, effort, matches, moves, len(columns))
+        system = _surface_system(target, candidate, effort, matches, moves, differences)
+        if effort.outline:
+            _add_outline(system, target, candidate, effort, controls, differences)
         curvature = Curvature(columns, system.curvature)
         free = np.ones(len(columns) + 7, dtype=bool)
         free[-1] = not keeps_scale
@@ -114,7 +135,7 @@ def _rows_around(
     return rows, differences
 
 
-def _product(matrix: "kernels.Sparse", controls: Float[np.ndarray, "B V 3"]) -> Float[np.ndarray, "N C"]:
+def _product(matrix: sparse.csr_array, controls: Float[np.ndarray, "B V 3"]) -> Float[np.ndarray, "N C"]:
     """Samples of every row as columns (x, y, z of the first row, of the second, ...)."""
     dense = np.ascontiguousarray(controls.transpose(1, 0, 2)).reshape(controls.shape[1], -1)
     product = np.empty((matrix.shape[0], dense.shape[1]))
@@ -172,34 +193,74 @@ class _System:
     curvature: Float[np.ndarray, "N N"]
     gradient: Float[np.ndarray, " N"]
 
+    @classmethod
+    def empty(cls, size: int) -> "_System":
+        return cls(np.zeros((size, size)), np.zeros(size))
 
-def _normal_equations(
+    def add(
+        self,
+        candidate: Candidate,
+        target: Target,
+        moves: Float[np.ndarray, "N C"],
+        differences: Float[np.ndarray, " D"],
+        metrics: Float[np.ndarray, "N 3 3"],
+        forces: Float[np.ndarray, "N 3"],
+    ) -> None:
+        """Add what pulls samples; ``moves`` are the samples of every row around the candidate, in model space."""
+        count = len(moves)
+        slopes = moves[:, 3:].reshape(count, -1, 3) - moves[:, None, :3]
+        slopes /= differences[:, None]
+        jacobian = np.empty((count, 3, len(differences) + 7))
+        kernels.pose_jacobian(
+            slopes.reshape(count, -1), candidate.placed(np.ascontiguousarray(moves[:, :3])),
+            candidate.scale * candidate.rotation, target.center, jacobian,
+        )  # fmt: skip
+        weighted = np.empty_like(jacobian)
+        kernels.apply_metrics(metrics, jacobian, weighted)
+        flat = jacobian.reshape(3 * count, -1)
+        self.curvature[:] += flat.T @ weighted.reshape(3 * count, -1)
+        self.gradient[:] += flat.T @ forces.ravel()
+
+
+def _surface_system(
     target: Target,
     candidate: Candidate,
     effort: Effort,
     matches: _Matches,
     moves: Float[np.ndarray, "N C"],
-    n_columns: int,
+    differences: Float[np.ndarray, " D"],
 ) -> _System:
-    count = len(matches.placed)
+    count, n_query = len(matches.placed), len(matches.query_rows)
     width = max(_LEAST_WIDTH, 1.5 * matches.median) if effort.width is None else effort.width
     metrics, forces = np.zeros((count, 3, 3)), np.zeros((count, 3))
     kernels.add_pairs(
         np.arange(count), matches.offsets, matches.normals, _EXACT_SPACING, width, 1.0 / count, metrics, forces
     )
-    n_query = len(matches.query_rows)
     kernels.add_pairs(
         matches.query_rows, matches.query_offsets, matches.query_normals, 1.5 * target.spacing(n_query), width,
         1.0 / n_query, metrics, forces,
     )  # fmt: skip
-    jacobian = np.empty((count, 3, n_columns + 7))
-    kernels.pose_jacobian(
-        moves, matches.placed, candidate.scale * candidate.rotation, target.center, jacobian
+    system = _System.empty(len(differences) + 7)
+    system.add(candidate, target, moves, differences, metrics, forces)
+    return system
+
+
+def _add_outline(
+    system: _System,
+    target: Target,
+    candidate: Candidate,
+    effort: Effort,
+    controls: Float[np.ndarray, "B V 3"],
+    differences: Float[np.ndarray, " D"],
+) -> None:
+    model = candidate.model
+    placed = np.ascontiguousarray(candidate.placed(model.outline @ controls[0]))
+    pulls = target.outline.pulls(
+        placed, model.triangles[COARSE], effort.outline, effort.outline_weight, effort.outline_width
     )
-    weighted = np.empty_like(jacobian)
-    kernels.apply_metrics(metrics, jacobian, weighted)
-    flat = jacobian.reshape(3 * count, -1)
-    return _System(flat.T @ weighted.reshape(3 * count, -1), flat.T @ forces.ravel())
+    if pulls is not None:
+        matrix = barycentric_rows(pulls.faces, pulls.weights, model.triangles[COARSE], model.outline)
+        system.add(candidate, target, _product(matrix, controls), differences, pulls.metrics, pulls.forces)
 
 
 def _bounded_step(

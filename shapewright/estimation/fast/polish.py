@@ -6,13 +6,13 @@ the surface by as much, and what trades against each other (lengths and the scal
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from shapewright.estimation.fast.candidate import Candidate
-from shapewright.estimation.fast.fitted_model import COARSE
+from shapewright.estimation.fast.measure import outline_distance
 from shapewright.estimation.fast.target import Target
 
 FIRST_STEP = 0.01
@@ -20,14 +20,6 @@ FIRST_STEP = 0.01
 LEAST_STEP = 2e-4
 _LONGEST = 0.25
 _GROWS, _SHRINKS = 1.5, 0.4
-
-
-def outline_distance(target: Target, candidate: Candidate) -> Candidate:
-    """Return the candidate with its z-buffer distance, measured on the surface with the fewest triangles."""
-    model = candidate.model
-    control = model.control_points(candidate.values)
-    points = np.ascontiguousarray(candidate.placed(model.outline @ control))
-    return replace(candidate, zbuffer=target.zbuffer_distance(points, model.triangles[COARSE]))
 
 
 @dataclass(eq=False)

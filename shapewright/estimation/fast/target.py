@@ -9,6 +9,7 @@ from shapewright.distances.rasterize import PASS_FRAMES, prepared
 from shapewright.distances.zbuffer import ZBufferTarget
 from shapewright.errors import MeshError
 from shapewright.estimation.fast.kernels import place_samples, sample_surface
+from shapewright.estimation.fast.outline import TargetOutline
 from shapewright.mesh import TriangleMesh
 
 SAMPLES = 12_000
@@ -25,6 +26,7 @@ class Target:
         tree: of the points.
         center: mean of the samples.
         radius: their root mean square distance from it.
+        outline: of the query in the depth views.
         frames: rotation matrices whose rows are axes of the query: of its points, of its normals, of its file.
 
     Raises:
@@ -52,6 +54,7 @@ class Target:
             principal_axes(self.normals[:_AXES_FROM]),
             np.eye(3),
         )
+        self.outline = TargetOutline(np.isfinite(zbuffer.views[::2]), rng)
         near = np.asarray(self.tree.query(self.points[:500], k=2)[0])
         self._spacing = 1.3 * float(np.median(near[:, 1]))
 
