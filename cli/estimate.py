@@ -13,7 +13,7 @@ from cli.sources import load_class, load_compiled, read_object
 from shapewright.errors import EstimationError, MeshFileError
 
 if TYPE_CHECKING:
-    from shapewright.estimation import ClassEstimation, Estimation
+    from shapewright.estimation import Estimation
 
 
 def estimate(
@@ -65,7 +65,7 @@ def estimate(
     _refuse_endings(output, picture)
     if (class_name is None) == (not models):
         raise typer.BadParameter("name models or a class", param_hint="--model")
-    from shapewright.estimation import EstimationSettings, estimate_class
+    from shapewright.estimation import EstimationSettings
     from shapewright.estimation import estimate as run_estimation
     from shapewright.mesh.file import load_mesh
 
@@ -77,14 +77,8 @@ def estimate(
     chosen |= {name: value for name, value in {"samples": samples, "seed": seed}.items() if value is not None}
     settings = EstimationSettings.from_dict(chosen)
     started_s = time.monotonic()
-    of_class: ClassEstimation | None = None
     with shown_progress("estimating") as progress:
-        if len(generators) == 1:
-            estimation = run_estimation(query, generators[0], settings, progress=progress)
-        else:
-            of_class = estimate_class(query, generators, settings, progress=progress)
-            estimation = of_class.estimation
-    model_name = generators[0].model.name if of_class is None else of_class.model.name
+        estimation = run_estimation(query, generators, settings, progress=progress)
     seconds = time.monotonic() - started_s
     for path in (output, picture):
         if path is not None:
@@ -100,16 +94,12 @@ def estimate(
         print_json(
             {
                 "query": str(mesh),
-                "model": model_name,
-                **(estimation if of_class is None else of_class).to_dict(),
+                **estimation.to_dict(),
                 **files,
                 "seconds": round(seconds, 3),
             }
         )
         return
-    if of_class is not None:
-        tried = ", ".join(f"{one.model.name} {one.panorama:.4g}" for one in of_class.tried)
-        typer.echo(f"fitted with the model {model_name}; panorama distances at first: {tried}")
     _print(estimation, seconds)
     for path in (output, picture):
         if path is not None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
         train_classifier,
     )
     from shapewright.errors import Cancelled, ShapewrightError
-    from shapewright.estimation import ClassEstimation, Estimation, EstimationSettings, estimate, estimate_class
+    from shapewright.estimation import Estimation, EstimationSettings, Query, estimate
     from shapewright.mesh import TriangleMesh
     from shapewright.mesh.file import load_mesh, parse_mesh
     from shapewright.modeling import CompiledModel, Parameter, ProceduralModel, Recorder, compile_model
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
 _HOMES = {
     "Cancelled": "errors",
     "Classification": "classification",
-    "ClassEstimation": "estimation",
     "Classifier": "classification",
     "CompiledModel": "modeling",
     "Estimation": "estimation",
     "EstimationSettings": "estimation",
     "Parameter": "modeling",
     "ProceduralModel": "modeling",
+    "Query": "estimation",
     "Recorder": "modeling",
     "ShapewrightError": "errors",
     "TrainedClassifier": "classification",
@@ -38,7 +38,6 @@ _HOMES = {
     "TriangleMesh": "mesh",
     "compile_model": "modeling",
     "estimate": "estimation",
-    "estimate_class": "estimation",
     "load_mesh": "mesh.file",
     "parse_mesh": "mesh.file",
     "render_images": "rendering",
@@ -48,7 +47,6 @@ _HOMES = {
 
 __all__ = [
     "Cancelled",
-    "ClassEstimation",
     "Classification",
     "Classifier",
     "CompiledModel",
@@ -56,6 +54,7 @@ __all__ = [
     "EstimationSettings",
     "Parameter",
     "ProceduralModel",
+    "Query",
     "Recorder",
     "ShapewrightError",
     "TrainedClassifier",
@@ -63,7 +62,6 @@ __all__ = [
     "TriangleMesh",
     "compile_model",
     "estimate",
-    "estimate_class",
     "load_mesh",
     "parse_mesh",
     "render_images",

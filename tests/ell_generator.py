@@ -1,5 +1,6 @@
 """A tiny model for tests of the estimation: two boxes that form an uneven L, no two axes or ends alike."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,7 @@ class EllModel:
     parameters: tuple[Parameter, ...]
     name: str = "ell"
     digest: str = "an uneven L"
+    unit_m: float | None = 0.001
 
 
 class EllGenerator:
@@ -24,7 +26,7 @@ class EllGenerator:
     def __init__(self, *parameters: str) -> None:
         self.model = EllModel(
             tuple(
-                Parameter(name, name.title(), 0.5, 2.0, (ParameterTarget(0, "size"),), "mm", 10.0)
+                Parameter(name, name.title(), 0.5, 2.0, (ParameterTarget(0, "size"),), "mm", 10.0, kind="length")
                 for name in parameters
             )
         )
@@ -50,6 +52,15 @@ class EllGenerator:
         foot = self._corner_box * np.stack([3.0 * length, 1.2 * width, 0.5 * one], axis=1)[:, None]
         tower = self._corner_box * np.stack([0.7 * one, 0.5 * one, 1.6 * height], axis=1)[:, None]
         return np.concatenate([foot, tower + np.array([0.0, 0.1, 0.4])], axis=1)
+
+    def surface_parts(self, steps: int = 2) -> np.ndarray:
+        return np.full(2 * len(self._corner_box), -1)
+
+    def parts_present(self, values: np.ndarray) -> np.ndarray:
+        return np.ones((len(values), 0), dtype=bool)
+
+    def instances(self, values: np.ndarray, steps: int = 2) -> Iterator[TriangleMesh]:
+        return (self.instance(row, steps) for row in values)
 
     def instance(self, values: np.ndarray, steps: int = 2) -> TriangleMesh:
         return TriangleMesh(self.surface_points(values[None], steps)[0], self.surface_triangles(steps))

@@ -10,6 +10,7 @@ from jaxtyping import Float, Float32
 
 from shapewright.errors import Cancelled, EstimationError
 from shapewright.estimation.generator import InstanceGenerator
+from shapewright.estimation.settings import EstimationSettings
 from shapewright.mapped_arrays import read_arrays, read_header, write_arrays
 from shapewright.progress import NULL_PROGRESS, Progress
 
@@ -178,3 +179,15 @@ def build_bank(
     except Cancelled:
         raise BankCancelled(joined(chunks) if chunks else None) from None
     return joined(chunks)
+
+
+def build_bank_for(
+    generator: InstanceGenerator, settings: EstimationSettings, progress: Progress = NULL_PROGRESS
+) -> PanoramaBank:
+    """Build the bank that an estimation with these settings scans.
+
+    Raises:
+        BankCancelled: the progress cancelled.
+    """
+    rng, _ = np.random.default_rng(settings.seed).spawn(2)  # the second spreads the points on the query
+    return build_bank(generator, settings.samples, rng, progress, subdivision_steps=settings.subdivision_steps)

@@ -1,64 +1,53 @@
-"""The one entry to every estimator, for one model; :mod:`shapewright.estimation.classes` has the one for a class."""
+"""The one entry to every estimator."""
 
-from shapewright.errors import Cancelled
-from shapewright.estimation.bank import PanoramaBank
+from collections.abc import Sequence
+
+from shapewright.errors import EstimationError
+from shapewright.estimation.estimator import BankOf, Estimator
 from shapewright.estimation.generator import InstanceGenerator
-from shapewright.estimation.result import Estimation, EstimationCancelled
-from shapewright.estimation.settings import EstimationSettings
+from shapewright.estimation.query import Query
+from shapewright.estimation.result import Estimation
+from shapewright.estimation.settings import EstimationSettings, EstimatorName
 from shapewright.mesh import TriangleMesh
 from shapewright.progress import NULL_PROGRESS, Progress
 
 
 def estimate(
-    query: TriangleMesh,
-    compiled: InstanceGenerator,
+    query: TriangleMesh | Query,
+    models: InstanceGenerator | Sequence[InstanceGenerator],
     settings: EstimationSettings | None = None,
     *,
     progress: Progress = NULL_PROGRESS,
-    bank: PanoramaBank | None = None,
+    banks: BankOf | None = None,
 ) -> Estimation:
-    """Find the parameter values and the pose with which a model rebuilds a query (paper section 3.3).
+    """Find the parameter values and the pose with which a model, or the best of several, rebuilds a query.
 
     Args:
-        query: the unknown mesh, in any units; soup is fine.
-        compiled: the model of its class, compiled.
-        settings: the paper's if not given.
+        query: the unknown mesh, in any units; soup is fine. A :class:`Query` says more: its unit, the axis that
+            points up, or its rotation.
+        models: the compiled model of its class, or all compiled models of the class, of which the best is found.
+        settings: the paper's if not given; ``settings.estimator`` chooses who works.
         progress: told what is going on; the fraction never falls. It may raise ``Cancelled``.
-        bank: the random instances of layer 1, if they were built before (:func:`build_bank`); otherwise they
-            are built here, which takes a good part of the time.
+        banks: finds the random instances of a model (:func:`build_bank`); without it they are built where an
+            estimator needs them, which takes a good part of the time of the reference.
 
     Raises:
         EstimationCancelled: the progress cancelled; ``best`` is the best result so far.
-        EstimationError: the bank belongs to another model.
+        EstimationError: no models, or a bank belongs to another model.
         MeshError: the query has no extent.
     """
-    from shapewright.estimation.reference import ReferenceEstimator  # compiled kernels: only when needed
-
     settings = settings or EstimationSettings()
-    return ReferenceEstimator(query, compiled, settings, progress).run(bank)
+    asked = query if isinstance(query, Query) else Query(query)
+    several = list(models) if isinstance(models, Sequence) else [models]
+    if not several:
+        raise EstimationError("expected at least one model, got none", where="models")
+    return _estimator(settings.estimator, banks).estimate(asked, several, settings, progress)
 
 
-def nearest(
-    query: TriangleMesh, compiled: InstanceGenerator, settings: EstimationSettings, bank: PanoramaBank
-) -> Estimation:
-    """Take the nearest of a bank's instances as it is: the answer of an estimation cancelled at its first step.
+def _estimator(name: EstimatorName, banks: BankOf | None) -> Estimator:
+    """Make an estimator; each is imported, with its compiled kernels, only when it is needed."""
+    if name == "reference":
+        from shapewright.estimation.reference import ReferenceEstimator
 
-    Raises:
-        EstimationError: the bank belongs to another model.
-        MeshError: the query has no extent.
-    """
-    try:
-        return estimate(query, compiled, settings, progress=_OnlyTheFirstStep(), bank=bank)
-    except EstimationCancelled as cancelled:
-        if cancelled.best is None:  # it has a bank, so there is a nearest one
-            raise
-        return cancelled.best
-
-
-class _OnlyTheFirstStep:
-    """Lets an estimation begin and cancels it at its first step."""
-
-    def report(self, fraction: float, message: str) -> None:
-        """Cancel as soon as anything is done."""
-        if fraction > 0:
-            raise Cancelled
+        return ReferenceEstimator(banks)
+    raise EstimationError(f"there is no estimator {name!r}", where="estimator")

@@ -1,11 +1,13 @@
 """What an estimator asks of a model: :class:`shapewright.modeling.CompiledModel` has it, a test's box too."""
 
+from collections.abc import Iterator
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from shapewright.mesh import TriangleMesh
+from shapewright.modeling.units import ParameterKind
 
 
 @runtime_checkable
@@ -36,6 +38,10 @@ class ParameterInfo(Protocol):
     def maximum(self) -> float:
         """Largest x."""
 
+    @property
+    def kind(self) -> ParameterKind | None:
+        """What x times the base value is, if the author says it."""
+
     def named_options(self) -> list[tuple[float, str]]:
         """Values and names of the options; none of a measure."""
 
@@ -51,6 +57,10 @@ class ModelInfo(Protocol):
     @property
     def digest(self) -> str:
         """Changes with every change of the model."""
+
+    @property
+    def unit_m(self) -> float | None:
+        """Meters that a unit of the coordinates stands for, if the author says it."""
 
     @property
     def parameters(self) -> "tuple[ParameterInfo, ...]":
@@ -100,5 +110,14 @@ class InstanceGenerator(Protocol):
     def surface_triangles(self, steps: int) -> Int[np.ndarray, "F 3"]:
         """Triangles of a batch."""
 
+    def surface_parts(self, steps: int) -> Int[np.ndarray, " V"]:
+        """Part number of each vertex of :meth:`surface_points`; -1 belongs to no part, and is always there."""
+
+    def parts_present(self, values: Float[np.ndarray, "B P"]) -> Bool[np.ndarray, "B N"]:
+        """Tell which parts each row's instance has."""
+
     def instance(self, values: Float[np.ndarray, " P"], steps: int) -> TriangleMesh:
-        """One instance, without the parts that it lacks."""
+        """One instance, without the parts that it lacks; what is left keeps its order."""
+
+    def instances(self, values: Float[np.ndarray, "B P"], steps: int) -> Iterator[TriangleMesh]:
+        """The instance of each row."""

@@ -82,8 +82,8 @@ def hill_climb(
     A choice has no steps (ours): each of its options is tried instead, in every pass.
 
     Values that cannot win are not measured: those equal to the incumbent after settling (so that a parameter that is
-    not active costs nothing), those that were the incumbent once (it was beaten), and those already refused at the
-    incumbent's pose.
+    not active costs nothing), and those that were measured from the incumbent's pose before. What was beaten at one
+    pose may win at another; where the pose plays no part nothing is measured twice.
 
     Args:
         evaluate: measures values; :func:`without_pose` makes one of a plain distance.
@@ -98,8 +98,7 @@ def hill_climb(
     """
     best = start
     passes = evaluations = 0
-    beaten = {_key(start.values)}
-    refused: set[tuple[bytes, int]] = set()
+    measured = {(_key(start.values), id(start.pose))}
     poses = [start.pose]  # kept alive: their identities are keys
     n_parameters = len(start.values)
     for rank, step in enumerate(step_sizes):
@@ -114,20 +113,19 @@ def hill_climb(
                 for move in options or (step, -step):
                     values = space.moved(best.values, p, move if options else best.values[p] + move)
                     key = _key(values)
-                    if key in beaten or (key, id(best.pose)) in refused:
+                    if (key, id(best.pose)) in measured:
                         continue
+                    measured.add((key, id(best.pose)))
                     progress.report(fraction, f"step {step:g}, {name} {best.distance:.4f}")
                     candidate = evaluate(values, best)
                     evaluations += 1
                     if candidate.distance < best.distance:
                         best = candidate
                         changed = True
-                        beaten.add(key)
+                        measured.add((key, id(best.pose)))
                         poses.append(best.pose)
                         if on_improvement is not None:
                             on_improvement(best)
-                    else:
-                        refused.add((key, id(best.pose)))
             passes_here += 1
         passes += passes_here
     progress.report(1.0, f"{name} {best.distance:.4f}")

@@ -4,20 +4,19 @@ from collections.abc import Callable
 
 import numpy as np
 
-from shapewright.distances.alignment import PointDistance, Pose, realign, rotations_24
+from shapewright.distances.alignment import Pose, realign
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_distances
 from shapewright.estimation.bank import PanoramaBank
-from shapewright.estimation.comparison import Comparison
+from shapewright.estimation.comparison import Comparison, Instance, PosedDistance
 from shapewright.estimation.hill_climbing import Candidate, Evaluate, SearchSpace, hill_climb, without_pose
 from shapewright.estimation.steady_progress import SteadyProgress
-from shapewright.mesh import TriangleMesh
 from shapewright.progress import Progress
 
 Improved = Callable[[Candidate], None]
 """Told about every new incumbent, so that a cancelled estimation has its best so far."""
 
-PosedDistance = Callable[[TriangleMesh], PointDistance]
-"""Prepares the distance of an instance, which then asks for its posed vertices."""
+DistanceOf = Callable[[Instance], PosedDistance]
+"""Prepares the distance of an instance, which then asks for its pose."""
 
 _SCAN_ROWS = 1024
 
@@ -42,24 +41,25 @@ def climb_panorama(comparison: Comparison, start: Candidate, progress: Progress,
 def align_in_24_ways(
     comparison: Comparison, start: Candidate, progress: Progress, steady: SteadyProgress, improved: Improved
 ) -> Candidate:
-    """Start of layer 2: the best alignment by surface distance out of those begun at each of the 24
-    rotations.
+    """Start of layer 2: the best alignment by surface distance out of those begun at each of the 24 rotations.
+
+    Of these only those are tried that agree with what is known of the query.
 
     The result's distance is the surface distance. ``improved`` is told in the same terms.
     """
     instance = comparison.instance(start.values)
-    points, surface = instance.vertices, comparison.surface(instance)
-    normal = comparison.initial_pose(points)
+    surface = comparison.surface(instance)
+    normal = comparison.initial_pose(instance)
     best: Candidate | None = None
-    rotations = rotations_24()
+    rotations = comparison.starting_rotations()
     for k, rotation in enumerate(rotations):
         known = "" if best is None else f", surface distance {best.distance:.4f}"
         progress.report(k / len(rotations), f"orientation {k + 1} of {len(rotations)}{known}")
         alignment = realign(
-            points,
-            surface,
+            surface.points,
+            surface.at_points,
             Pose(rotation).compose(normal),
-            comparison.settings.alignment,
+            comparison.alignment,
             checkpoint=steady.repeat,
         )
         if best is None or alignment.distance < best.distance:
@@ -72,7 +72,7 @@ def align_in_24_ways(
 
 def climb_realigned(
     comparison: Comparison,
-    distance: PosedDistance,
+    distance: DistanceOf,
     name: str,
     start: Candidate,
     original_scale: float,
@@ -90,19 +90,17 @@ def climb_realigned(
     return _climb(comparison, evaluate, begin, progress, improved, name)
 
 
-def _realigned(
-    comparison: Comparison, distance: PosedDistance, original_scale: float, steady: SteadyProgress
-) -> Evaluate:
+def _realigned(comparison: Comparison, distance: DistanceOf, original_scale: float, steady: SteadyProgress) -> Evaluate:
     """Measure an instance at the best pose that is found from the incumbent's; generated once for all poses."""
 
     def evaluate(values: np.ndarray, incumbent: Candidate) -> Candidate:
         instance = comparison.instance(values)
-        points = instance.vertices
+        measured = distance(instance)
         alignment = realign(
-            points,
-            distance(instance),
-            incumbent.pose or comparison.initial_pose(points),
-            comparison.settings.alignment,
+            measured.points,
+            measured.at_points,
+            incumbent.pose or comparison.initial_pose(instance),
+            comparison.alignment,
             original_scale=original_scale,
             checkpoint=steady.repeat,
         )

@@ -1,192 +1,139 @@
-"""The reference estimator: the paper, step by step (section 3.3, Figure 4)."""
+"""The reference estimator: the paper, step by step (section 3.3, Figure 4), for one model or several."""
 
-from collections.abc import Callable
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
-import numpy as np
-from jaxtyping import Float
-
-from shapewright.distances.alignment import Pose
 from shapewright.errors import Cancelled
-from shapewright.estimation import layers
-from shapewright.estimation.bank import BankCancelled, PanoramaBank, build_bank
+from shapewright.estimation.bank import BankCancelled, PanoramaBank, build_bank_for
 from shapewright.estimation.comparison import Comparison
+from shapewright.estimation.estimator import BankOf
 from shapewright.estimation.generator import InstanceGenerator
 from shapewright.estimation.hill_climbing import Candidate
-from shapewright.estimation.result import (
-    STAGE_LAYERS,
-    Estimation,
-    EstimationCancelled,
-    ParameterEstimate,
-    Stage,
-    StageName,
-)
+from shapewright.estimation.layers import nearest_in_bank
+from shapewright.estimation.prepared_query import PreparedQuery
+from shapewright.estimation.query import Query
+from shapewright.estimation.record import Record
+from shapewright.estimation.reference_run import REFERENCE_STAGES, refine
+from shapewright.estimation.result import Estimation, EstimationCancelled, ModelTried
 from shapewright.estimation.settings import EstimationSettings
-from shapewright.estimation.steady_progress import SteadyProgress, phases
-from shapewright.estimation.verdict import choose
-from shapewright.mesh import TriangleMesh
-from shapewright.progress import Progress
-
-SHOWN_SUBDIVISION_STEPS = 2
-"""The fitted mesh is subdivided at least this often, even if coarser instances were compared."""
+from shapewright.estimation.steady_progress import SteadyProgress, Titled
+from shapewright.estimation.verdict import order
+from shapewright.progress import PartialProgress, Progress
 
 _BANK_WEIGHT = 15.0  # of the paper's 10 000 instances
-_WEIGHTS = {  # shares of the time that were seen
-    "layer 1": 3.0,
-    "layer 2, alignment": 15.0,
-    "layer 2": 25.0,
-    "layer 3 after layer 2": 21.0,
-    "layer 3 after layer 1": 21.0,
-}
+_REFINING_WEIGHT = 85.0
 
 
 class ReferenceEstimator:
-    """One run of the reference estimator over one query.
+    """The paper has one model; of several the banks are scanned for the instance with the smallest panorama distance.
 
-    The readings that the paper leaves open:
+    The ``settings.refined_models`` nearest models go through all layers, and :func:`verdict.order` tells which result
+    is better (ours).
 
-    - The initial normalisation brings the query and the instance of layer 1 into the shared coordinate system
-      once; afterwards the pose alone moves the instance. Normalising every instance anew would let each
-      change of one length rescale everything else.
-    - The limits of the scale are shares of the scale that this normalisation gave.
-    - A climb that is realigned begins at the realigned start, and each candidate's realignment at the pose of
-      the incumbent.
-    - If layer 2 changed nothing, the second start of layer 3 equals the first and is not run again.
+    Args:
+        banks: finds the bank of a model; without it each is built when its turn comes. None is kept after its scan, as
+            a bank may be large.
     """
 
-    def __init__(
+    def __init__(self, banks: BankOf | None = None) -> None:
+        self._banks = banks
+
+    def estimate(
         self,
-        query: TriangleMesh,
-        generator: InstanceGenerator,
+        query: Query,
+        models: Sequence[InstanceGenerator],
         settings: EstimationSettings,
         progress: Progress,
-    ) -> None:
-        self._query = query
-        self._generator = generator
-        self._settings = settings
-        self._steady = SteadyProgress(progress)
-        self._found: dict[StageName, Candidate] = {}
-        self._finished: set[StageName] = set()
-        self._comparison: Comparison | None = None
-
-    def run(self, bank: PanoramaBank | None) -> Estimation:
-        """Work through the layers.
-
-        Raises:
-            EstimationCancelled: the progress cancelled; carries the best so far.
-            EstimationError: the bank does not fit.
-            MeshError: the query or an instance has no extent.
-        """
+    ) -> Estimation:
+        """Find the best fit; see :class:`shapewright.estimation.estimator.Estimator`."""
+        work = _Work(models, settings, self._banks or _builder(settings))
         try:
-            self._work(bank)
-            return self._estimation()
+            return work.run(query, SteadyProgress(progress))
         except Cancelled as cancelled:
-            raise EstimationCancelled(self._estimation() if self._found else None) from cancelled
+            raise EstimationCancelled(work.best(complete=False)) from cancelled
 
-    def _work(self, bank: PanoramaBank | None) -> None:
+
+@dataclass(eq=False)
+class _Scanned:
+    """A model after its scan, and what its refinement has found so far."""
+
+    generator: InstanceGenerator
+    nearest: Candidate
+    record: Record | None = None
+
+
+class _Work:
+    """One query's way through the models."""
+
+    def __init__(self, models: Sequence[InstanceGenerator], settings: EstimationSettings, banks: BankOf) -> None:
+        self._models = models
+        self._settings = settings
+        self._banks = banks
+        self._prepared: PreparedQuery | None = None
+        self._scanned: list[_Scanned] = []
+
+    def run(self, query: Query, steady: SteadyProgress) -> Estimation:
+        """Scan all models, refine the nearest."""
         settings = self._settings
-        bank_rng, points_rng = np.random.default_rng(settings.seed).spawn(2)
-        bank_weight = _BANK_WEIGHT * settings.samples / 10_000 if bank is None else 0.0
-        phase = phases(self._steady, {"bank": bank_weight, **_WEIGHTS})
-        self._steady.report(0.0, "preparing the query")
-        comparison = Comparison(self._query, self._generator, settings, points_rng)
-        self._comparison = comparison
-        if bank is None:
-            bank = self._build_bank(comparison, bank_rng, phase["bank"])
-        else:
-            bank.check_fits(self._generator, settings.subdivision_steps)
+        steady.report(0.0, "preparing the query")
+        prepared = self._prepared = PreparedQuery(query, settings)
+        refined = min(settings.refined_models, len(self._models))
+        banks_weight = _BANK_WEIGHT * len(self._models) * settings.samples / 10_000
+        scan_share = banks_weight / (banks_weight + _REFINING_WEIGHT * refined)
+        self._scan(prepared, PartialProgress(steady, 0.0, scan_share))
+        self._scanned.sort(key=lambda one: one.nearest.distance)
+        for number, one in enumerate(self._scanned[:refined]):
+            start, end = (scan_share + (1.0 - scan_share) * k / refined for k in (number, number + 1))
+            part = Titled(PartialProgress(steady, start, end), one.generator.model.name)
+            one.record = self._begin(prepared, one)
+            refine(one.record, one.nearest, part, steady)
+        steady.report(1.0, "estimated")
+        best = self.best(complete=True)
+        assert best is not None
+        return best
 
-        start = layers.nearest_in_bank(comparison.descriptor, bank)
-        self._found["panorama"] = start
-        first = layers.climb_panorama(comparison, start, phase["layer 1"], self._keep("panorama"))
-        original_scale = comparison.initial_pose(comparison.instance(first.values).vertices).scale
-        aligned = layers.align_in_24_ways(
-            comparison, first, phase["layer 2, alignment"], self._steady, self._keep("panorama")
-        )
-        self._finished.add("panorama")
+    def best(self, *, complete: bool) -> Estimation | None:
+        """Answer with what is there: the best of the refined models, else the nearest instance of the scan."""
+        if self._prepared is None or not self._scanned:
+            return None
+        by_distance = sorted(self._scanned, key=lambda one: one.nearest.distance)
+        if all(one.record is None for one in by_distance):
+            by_distance[0].record = self._begin(self._prepared, by_distance[0])
+        found = [(one, one.record.estimation()) for one in by_distance if one.record is not None]
+        answers = sorted(((one, answer) for one, answer in found if answer), key=lambda item: order(item[1]))
+        best = answers[0][1]
+        tried = [ModelTried(one.generator.model, answer.distances, one.nearest.distance) for one, answer in answers]
+        tried += [
+            ModelTried(one.generator.model, panorama=one.nearest.distance) for one in by_distance if one.record is None
+        ]
+        reached = {id(one.generator) for one in by_distance}
+        tried += [ModelTried(generator.model) for generator in self._models if id(generator) not in reached]
+        return replace(best, tried=tuple(tried), complete=complete and best.complete)
 
-        def climb(
-            distance: layers.PosedDistance, name: str, start: Candidate, stage: StageName, part: str
-        ) -> Candidate:
-            keep = self._keep(stage)
-            best = layers.climb_realigned(
-                comparison, distance, name, start, original_scale, phase[part], self._steady, keep
-            )
-            self._finished.add(stage)
-            return best
+    def _scan(self, prepared: PreparedQuery, progress: Progress) -> None:
+        count = len(self._models)
+        for number, generator in enumerate(self._models):
+            part = Titled(PartialProgress(progress, number / count, (number + 1) / count), generator.model.name)
+            part.report(0.0, "random instances")
+            try:
+                self._add(prepared, generator, self._banks(generator, part))
+            except BankCancelled as cancelled:
+                if cancelled.bank is not None:
+                    self._add(prepared, generator, cancelled.bank)
+                raise
 
-        surface, zbuffer = "surface distance", "z-buffer distance"
-        second = climb(comparison.surface, surface, aligned, "surface", "layer 2")
-        third = climb(comparison.zbuffer, zbuffer, second, "surface+zbuffer", "layer 3 after layer 2")
-        if second.pose is aligned.pose and np.array_equal(second.values, aligned.values):
-            self._found["zbuffer"] = third
-            self._finished.add("zbuffer")
-        else:
-            climb(comparison.zbuffer, zbuffer, aligned, "zbuffer", "layer 3 after layer 1")
-        self._steady.report(1.0, "estimated")
+    def _add(self, prepared: PreparedQuery, generator: InstanceGenerator, bank: PanoramaBank) -> None:
+        bank.check_fits(generator, self._settings.subdivision_steps)
+        self._scanned.append(_Scanned(generator, nearest_in_bank(prepared.descriptor, bank)))
 
-    def _build_bank(self, comparison: Comparison, rng: np.random.Generator, progress: Progress) -> PanoramaBank:
-        settings = self._settings
-        try:
-            return build_bank(
-                self._generator, settings.samples, rng, progress, subdivision_steps=settings.subdivision_steps
-            )
-        except BankCancelled as cancelled:
-            if cancelled.bank is not None:
-                self._found["panorama"] = layers.nearest_in_bank(comparison.descriptor, cancelled.bank)
-            raise
+    def _begin(self, prepared: PreparedQuery, one: _Scanned) -> Record:
+        record = Record("reference", Comparison(prepared, one.generator, self._settings), REFERENCE_STAGES)
+        record.put("panorama", one.nearest.values)
+        return record
 
-    def _keep(self, name: StageName) -> Callable[[Candidate], None]:
-        def keep(candidate: Candidate) -> None:
-            self._found[name] = candidate
 
-        return keep
+def _builder(settings: EstimationSettings) -> BankOf:
+    def build(generator: InstanceGenerator, progress: Progress) -> PanoramaBank:
+        return build_bank_for(generator, settings, progress)
 
-    def _estimation(self) -> Estimation:
-        stages = tuple(self._stage(name) for name in STAGE_LAYERS if name in self._found)
-        answer = choose(stages, self._settings)
-        steps = max(self._settings.subdivision_steps, SHOWN_SUBDIVISION_STEPS)
-        instance = self._generator.instance(answer.values, steps)
-        mesh = TriangleMesh(answer.pose.apply(instance.vertices), instance.faces)
-        return Estimation(
-            layer=answer.layer,
-            values=answer.values,
-            parameters=self._parameters(answer.values),
-            pose=answer.pose,
-            distances=answer.distances,
-            stages=stages,
-            mesh=mesh,
-            complete=len(self._finished) == len(STAGE_LAYERS),
-        )
-
-    def _parameters(self, values: Float[np.ndarray, " P"]) -> tuple[ParameterEstimate, ...]:
-        space = self._generator.space
-        lowest, highest = space.ranges(values[None])
-        active = space.active(values[None])[0]
-        return tuple(
-            ParameterEstimate(
-                name=parameter.name,
-                label=parameter.label,
-                unit=parameter.unit,
-                value=float(values[i]),
-                base_value=parameter.base_value,
-                minimum=float(lowest[0, i]),
-                maximum=float(highest[0, i]),
-                active=bool(active[i]),
-                option=dict(parameter.named_options()).get(float(values[i])),
-            )
-            for i, parameter in enumerate(self._generator.model.parameters)
-        )
-
-    def _stage(self, name: StageName) -> Stage:
-        assert self._comparison is not None
-        comparison = self._comparison
-        candidate = self._found[name]
-        instance = comparison.instance(candidate.values)
-        pose: Pose = candidate.pose or comparison.initial_pose(instance.vertices)
-        return Stage(
-            name=name,
-            values=candidate.values,
-            pose=comparison.to_file.compose(pose),
-            distances=comparison.distances(instance, pose),
-            complete=name in self._finished,
-        )
+    return build

@@ -1,7 +1,7 @@
 """Settings of an estimation; the defaults are the paper's (section 3.3)."""
 
 from dataclasses import asdict, dataclass, field, fields
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -10,6 +10,8 @@ from shapewright.errors import EstimationError
 
 EstimatorName = Literal["reference"]
 """The estimators there are; ``reference`` is the paper, step by step."""
+ModelPoints = Literal["surface", "vertices"]
+"""Where the surface distance measures an instance."""
 
 
 @dataclass(frozen=True)
@@ -21,10 +23,15 @@ class EstimationSettings:
         surface_points: Poisson-disk points on the query.
         image_size: pixels along each side of the 14 depth images, even.
         subdivision_steps: Catmull–Clark steps of the instances that are compared, 0 to 4.
+        model_points: where the surface distance measures an instance: at points spread evenly over its surface, or at
+            its vertices, as the paper does. Flat creased faces have few vertices, so that some models are then farther
+            from themselves than the threshold of layer 2.
         surface_threshold: layer 2 is an adequate match below this surface distance.
         zbuffer_threshold: layer 3 is an adequate match below this (normalised) z-buffer distance.
         step_sizes: of the hill climbing, largest first.
         alignment: steps and limits of the realignment.
+        refined_models: of several models, how many the reference takes through all layers: those with the nearest
+            random instances.
         seed: of the random instances and of the points on the query.
         estimator: which of the estimators works.
 
@@ -36,10 +43,12 @@ class EstimationSettings:
     surface_points: int = 2000
     image_size: int = 256
     subdivision_steps: int = 2
+    model_points: ModelPoints = "surface"
     surface_threshold: float = 0.04
     zbuffer_threshold: float = 0.7
     step_sizes: tuple[float, ...] = (1.0, 0.5, 0.25, 0.1, 0.01)
     alignment: AlignmentSettings = field(default_factory=AlignmentSettings)
+    refined_models: int = 2
     seed: int = 0
     estimator: EstimatorName = "reference"
 
@@ -60,8 +69,10 @@ class EstimationSettings:
             raise EstimationError(
                 f"expected positive steps from large to small, got {self.step_sizes}", where="step_sizes"
             )
-        if self.estimator not in ("reference",):
-            raise EstimationError(f"there is no estimator {self.estimator!r}", where="estimator")
+        for name, known in (("estimator", get_args(EstimatorName)), ("model_points", get_args(ModelPoints))):
+            value = getattr(self, name)
+            if value not in known:
+                raise EstimationError(f"expected one of {', '.join(known)}, got {value!r}", where=name)
 
     @classmethod
     def quick(cls, *, samples: int = 1000, seed: int = 0) -> "EstimationSettings":
@@ -116,6 +127,7 @@ _WHOLE = (
     ("surface_points", 10, 1_000_000),
     ("image_size", 8, 4096),
     ("subdivision_steps", 0, 4),
+    ("refined_models", 1, 1000),
     ("seed", 0, 2**63 - 1),
 )
 

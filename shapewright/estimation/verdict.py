@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 
-from shapewright.estimation.result import Estimation, Stage
+from shapewright.estimation.result import Estimation, FailedThreshold, Stage, Verdict
 from shapewright.estimation.settings import EstimationSettings
 
 
 def best_zbuffer_stage(stages: Sequence[Stage]) -> Stage | None:
-    """The better of the two results of layer 3, None if there is none."""
+    """The best of the results of layer 3, None if there is none."""
     return min((s for s in stages if s.layer == 3), key=lambda s: s.distances.zbuffer, default=None)
 
 
@@ -30,6 +30,21 @@ def choose(stages: Sequence[Stage], settings: EstimationSettings) -> Stage:
     if 2 in by_layer and by_layer[2].distances.surface < settings.surface_threshold:
         return by_layer[2]
     return by_layer[1]
+
+
+def judge(stages: Sequence[Stage], answer: Stage, settings: EstimationSettings) -> Verdict:
+    """Say which thresholds kept the results of higher layers from being the answer.
+
+    A layer that was not reached has missed none.
+    """
+    failed = []
+    third = best_zbuffer_stage(stages)
+    if answer.layer < 3 and third is not None:
+        failed.append(FailedThreshold("zbuffer", third.distances.zbuffer, settings.zbuffer_threshold))
+    second = next((stage for stage in stages if stage.layer == 2), None)
+    if answer.layer < 2 and second is not None:
+        failed.append(FailedThreshold("surface", second.distances.surface, settings.surface_threshold))
+    return Verdict(answer.layer, tuple(failed))
 
 
 def order(estimation: Estimation) -> tuple[int, float]:

@@ -1,8 +1,10 @@
-"""Binary glTF of meshes that share one topology: written in one pass, so that a slider moves smoothly."""
+"""Binary glTF: meshes that share a topology, written in one pass so that a slider moves smoothly; colored scenes."""
 
 import json
 import struct
-from typing import Final
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -12,6 +14,7 @@ _FLOAT: Final = 5126
 _UNSIGNED_INT: Final = 5125
 _ARRAY_BUFFER: Final = 34962
 _ELEMENT_ARRAY_BUFFER: Final = 34963
+_MATERIAL: Final = {"doubleSided": True, "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8}}
 
 
 class GlbWriter:
@@ -21,55 +24,112 @@ class GlbWriter:
     """
 
     def __init__(self, triangles: Int[np.ndarray, "F 3"]) -> None:
-        self._indices = np.ascontiguousarray(triangles, dtype="<u4").tobytes()
-        self._index_count = int(triangles.size)
+        self._indices = _index_bytes(triangles)
 
     def write(self, vertices: Float[np.ndarray, "V 3"]) -> bytes:
         """The GLB file of one mesh; positions become float32."""
+        parts = _Parts()
+        parts.add_mesh(vertices, self._indices)
+        return parts.file()
+
+
+@dataclass(frozen=True, eq=False)
+class ColoredMesh:
+    """A node of a scene.
+
+    Args:
+        name: of the node.
+        vertices: positions.
+        triangles: vertex indices.
+        colors: red, green, blue in 0..1 of each vertex, as screens show them (sRGB).
+    """
+
+    name: str
+    vertices: Float[np.ndarray, "V 3"]
+    triangles: Int[np.ndarray, "F 3"]
+    colors: Float[np.ndarray, "V 3"]
+
+
+def write_colored_glb(meshes: Sequence[ColoredMesh]) -> bytes:
+    """Return the GLB file of a scene with one node for each mesh; positions and colors become float32."""
+    parts = _Parts()
+    for mesh in meshes:
+        parts.add_mesh(mesh.vertices, _index_bytes(mesh.triangles), name=mesh.name, colors=mesh.colors)
+    return parts.file()
+
+
+class _Parts:
+    """What a file consists of: the lists of a glTF document, and the pieces of its binary chunk."""
+
+    def __init__(self) -> None:
+        self._nodes: list[dict[str, Any]] = []
+        self._meshes: list[dict[str, Any]] = []
+        self._accessors: list[dict[str, Any]] = []
+        self._views: list[dict[str, int]] = []
+        self._pieces: list[bytes] = []  # all of a length that is a multiple of 4
+        self._length = 0
+
+    def add_mesh(
+        self,
+        vertices: Float[np.ndarray, "V 3"],
+        indices: bytes,
+        *,
+        name: str | None = None,
+        colors: Float[np.ndarray, "V 3"] | None = None,
+    ) -> None:
         positions = np.ascontiguousarray(vertices, dtype="<f4")
-        data = positions.tobytes()
+        bounds = {"min": positions.min(axis=0).tolist(), "max": positions.max(axis=0).tolist()}
+        attributes = {"POSITION": self._add_vectors(positions, bounds)}
+        corners = self._add(indices, _ELEMENT_ARRAY_BUFFER, _UNSIGNED_INT, len(indices) // 4, "SCALAR", {})
+        if colors is not None:  # section 3.7.2.1: vertex colors are linear
+            attributes["COLOR_0"] = self._add_vectors(_linear(colors).astype("<f4"), {})
+        named = {} if name is None else {"name": name}
+        self._nodes.append({"mesh": len(self._meshes), **named})
+        self._meshes.append({"primitives": [{"attributes": attributes, "indices": corners, "material": 0}], **named})
+
+    def _add_vectors(self, rows: np.ndarray, bounds: dict[str, Any]) -> int:
+        return self._add(rows.tobytes(), _ARRAY_BUFFER, _FLOAT, len(rows), "VEC3", bounds)
+
+    def _add(self, data: bytes, target: int, component: int, count: int, kind: str, bounds: dict[str, Any]) -> int:
+        view: dict[str, int] = {"buffer": 0, "byteLength": len(data), "target": target}
+        if self._length:
+            view["byteOffset"] = self._length
+        accessor = {"bufferView": len(self._views), "componentType": component, "count": count, "type": kind, **bounds}
+        self._views.append(view)
+        self._accessors.append(accessor)
+        self._pieces.append(data)
+        self._length += len(data)
+        return len(self._accessors) - 1
+
+    def file(self) -> bytes:
         document = {
             "asset": {"version": "2.0", "generator": "shapewright"},
             "scene": 0,
-            "scenes": [{"nodes": [0]}],
-            "nodes": [{"mesh": 0}],
-            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
-            "materials": [
-                {"doubleSided": True, "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8}}
-            ],
-            "accessors": [
-                {
-                    "bufferView": 0,
-                    "componentType": _FLOAT,
-                    "count": len(positions),
-                    "type": "VEC3",
-                    "min": positions.min(axis=0).tolist(),
-                    "max": positions.max(axis=0).tolist(),
-                },
-                {"bufferView": 1, "componentType": _UNSIGNED_INT, "count": self._index_count, "type": "SCALAR"},
-            ],
-            "bufferViews": [
-                {"buffer": 0, "byteLength": len(data), "target": _ARRAY_BUFFER},
-                {
-                    "buffer": 0,
-                    "byteOffset": len(data),
-                    "byteLength": len(self._indices),
-                    "target": _ELEMENT_ARRAY_BUFFER,
-                },
-            ],
-            "buffers": [{"byteLength": len(data) + len(self._indices)}],
+            "scenes": [{"nodes": list(range(len(self._nodes)))}],
+            "nodes": self._nodes,
+            "meshes": self._meshes,
+            "materials": [_MATERIAL],
+            "accessors": self._accessors,
+            "bufferViews": self._views,
+            "buffers": [{"byteLength": self._length}],
         }
         text = json.dumps(document, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
-        binary_length = len(data) + len(self._indices)  # both are multiples of 4
-        total = 12 + 8 + len(text) + 8 + binary_length
         return b"".join(
             (
-                struct.pack("<4sII", b"glTF", 2, total),
+                struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + self._length),
                 struct.pack("<I4s", len(text), b"JSON"),
                 text,
-                struct.pack("<I4s", binary_length, b"BIN\0"),
-                data,
-                self._indices,
+                struct.pack("<I4s", self._length, b"BIN\0"),
+                *self._pieces,
             )
         )
+
+
+def _index_bytes(triangles: Int[np.ndarray, "F 3"]) -> bytes:
+    return np.ascontiguousarray(triangles, dtype="<u4").tobytes()
+
+
+def _linear(colors: Float[np.ndarray, "V 3"]) -> Float[np.ndarray, "V 3"]:
+    """Return sRGB colors as linear light (IEC 61966-2-1)."""
+    return np.where(colors <= 0.04045, colors / 12.92, ((colors + 0.055) / 1.055) ** 2.4)

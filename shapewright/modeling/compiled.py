@@ -1,29 +1,28 @@
 """A compiled model: the topology once, then positions for batches of parameters (DESIGN.md, section 2)."""
 
-import threading
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
+from scipy import sparse
 
 from shapewright.errors import ModelError, ParameterError
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.executable import link
 from shapewright.modeling.parameter_space import ParameterSpace, Values
-from shapewright.modeling.part import ALWAYS, PartVertices
+from shapewright.modeling.part import PartVertices
 from shapewright.modeling.procedural_model import ProceduralModel
 from shapewright.modeling.program import Change, Program
-from shapewright.modeling.subdivision import Polygons, SubdivisionStep, subdivide
+from shapewright.modeling.subdivision import Polygons
+from shapewright.modeling.surface_levels import SurfaceLevels
 
 SUBDIVISION_STEPS = 2
 """Surface sampling uses two steps (PAPER-NOTES, section 3)."""
-MAX_SUBDIVISION_STEPS = 4
-MAX_SURFACE_VERTICES = 1_000_000
-MAX_SURFACE_WEIGHTS = 10_000_000
-"""Bound on the entries of a subdivision matrix; a face of n corners makes about n x n of them."""
 _CHUNK_BYTES = 64 * 2**20
+
+Present = Bool[np.ndarray, "B N"]
 
 
 class CompiledModel:
@@ -37,6 +36,7 @@ class CompiledModel:
     def __init__(self, model: ProceduralModel) -> None:
         self.model = model
         self.space = ParameterSpace(model.parameters)
+        self._presence = self.space.flat([part.present_when for part in model.parts])
         mesh = ControlMesh()
         program = Program()
         changes: dict[int, list[tuple[Change, int]]] = defaultdict(list)
@@ -59,16 +59,12 @@ class CompiledModel:
         self._parts.write(program)
         self._live = np.array(mesh.live_vertices(), dtype=np.int64)
         self._executable = link(program, self._parts.part_of, self._live)
-        self._control = _compact(mesh, self._live)
+        self._surface = SurfaceLevels(_compact(mesh, self._live), self._parts.part_of[self._live])
         self.is_closed = mesh.is_closed()
         self.control_components: Int[np.ndarray, " V"] = np.array([mesh.component_of(int(v)) for v in self._live])
         """The component of each row of :meth:`control_points`."""
         self.minimum = self.space.minimum
         self.maximum = self.space.maximum
-        self._levels: list[SubdivisionStep] = []
-        self._level_parts = [self._parts.part_of[self._live]]
-        self._level_triangles: dict[int, Int[np.ndarray, "F 3"]] = {}
-        self._growing = threading.RLock()  # several threads may ask for the same new level
 
     # ------------------------------------------------------------------ parameters
 
@@ -95,7 +91,7 @@ class CompiledModel:
         Raises:
             ParameterError: the array has not P columns or holds NaN.
         """
-        return self._settled(values)
+        return self._settled(values)[0]
 
     def values_from_mapping(self, named: Mapping[str, float]) -> Float[np.ndarray, " P"]:
         """Return one settled row from names; see :meth:`ParameterSpace.values_from_mapping`.
@@ -111,14 +107,14 @@ class CompiledModel:
         Raises:
             ParameterError: the array has not P columns or holds NaN.
         """
-        return self._present(self._settled(values))
+        return self._settled(values)[1]
 
     # ------------------------------------------------------------------ geometry
 
     @property
     def control_faces(self) -> tuple[tuple[int, ...], ...]:
         """The polygons of the control mesh, as rows of :meth:`control_points`."""
-        return self._control.loops
+        return self._surface.polygons(0).loops
 
     @property
     def control_vertex_ids(self) -> Int[np.ndarray, " V"]:
@@ -131,7 +127,7 @@ class CompiledModel:
         Raises:
             ParameterError: the array has not P columns or holds NaN.
         """
-        return self._control_rows(self._settled(values))
+        return self._executable.run(*self._settled(values))
 
     def surface_points(
         self, values: Float[np.ndarray, "B P"], steps: int = SUBDIVISION_STEPS
@@ -144,10 +140,10 @@ class CompiledModel:
             ParameterError: the array has not P columns or holds NaN.
             ModelError: ``steps`` is out of range.
         """
-        values = self._settled(values)
+        settled, present = self._settled(values)
         points = np.empty((len(values), self.surface_polygons(steps).n_vertices, 3))
-        for start, chunk in self._surface_chunks(values, steps):
-            points[start : start + len(chunk)] = chunk
+        for rows in self._chunks(len(values), steps):
+            self._surface.refine(self._executable.run(settled[rows], present[rows]), steps, points[rows])
         return points
 
     def surface_chunks(
@@ -159,38 +155,33 @@ class CompiledModel:
             ParameterError: the array has not P columns or holds NaN.
             ModelError: ``steps`` is out of range.
         """
-        return self._surface_chunks(self._settled(values), steps)
+        return self._surface_chunks(*self._settled(values), steps)
 
-    def _surface_chunks(self, values: Values, steps: int) -> Iterator[tuple[int, Float[np.ndarray, "C V 3"]]]:
-        n_vertices = self.surface_polygons(steps).n_vertices
-        for rows in self._batches(len(values), 24 * n_vertices):
-            controls = self._control_rows(values[rows])
-            count = len(controls)
-            flat = controls.transpose(1, 2, 0).reshape(-1, 3 * count)
-            for level in self._levels[:steps]:
-                flat = level.matrix @ flat
-            yield rows.start, np.ascontiguousarray(flat.reshape(-1, 3, count).transpose(2, 0, 1))
+    def _surface_chunks(
+        self, settled: Values, present: Present, steps: int
+    ) -> Iterator[tuple[int, Float[np.ndarray, "C V 3"]]]:
+        for rows in self._chunks(len(settled), steps):
+            yield rows.start, self._surface.refine(self._executable.run(settled[rows], present[rows]), steps)
+
+    def _chunks(self, count: int, steps: int) -> Iterator[slice]:
+        size = max(1, _CHUNK_BYTES // (24 * self.surface_polygons(steps).n_vertices))
+        return (slice(start, start + size) for start in range(0, count, size))
+
+    def surface_matrix(self, steps: int = SUBDIVISION_STEPS) -> sparse.csr_array:
+        """Return the matrix (V', V) that makes vertices after ``steps`` subdivisions of :meth:`control_points`.
+
+        Raises:
+            ModelError: ``steps`` is out of range, or the matrix would have too many entries.
+        """
+        return self._surface.matrix(steps)
 
     def surface_polygons(self, steps: int = SUBDIVISION_STEPS) -> Polygons:
         """Return the topology after ``steps`` subdivisions; raises ModelError if that is out of range."""
-        if not 0 <= steps <= MAX_SUBDIVISION_STEPS:
-            raise ModelError(f"subdivision steps must be 0 to {MAX_SUBDIVISION_STEPS}")
-        with self._growing:
-            while len(self._levels) < steps:
-                polygons = self._levels[-1].refined if self._levels else self._control
-                if sum(map(len, polygons.loops)) > MAX_SURFACE_VERTICES:
-                    raise ModelError(f"more than {MAX_SURFACE_VERTICES} vertices after {steps} subdivisions")
-                if sum(len(loop) ** 2 for loop in polygons.loops) > MAX_SURFACE_WEIGHTS:
-                    raise ModelError("the faces have too many corners to be subdivided")
-                self._levels.append(subdivide(polygons))
-        return self._levels[steps - 1].refined if steps else self._control
+        return self._surface.polygons(steps)
 
     def surface_triangles(self, steps: int = SUBDIVISION_STEPS) -> Int[np.ndarray, "F 3"]:
         """Return the triangles after ``steps`` subdivisions, the same for every instance."""
-        with self._growing:
-            if steps not in self._level_triangles:
-                self._level_triangles[steps] = self.surface_polygons(steps).triangles()
-            return self._level_triangles[steps]
+        return self._surface.triangles(steps)
 
     def instance(self, values: Float[np.ndarray, " P"], steps: int = SUBDIVISION_STEPS) -> TriangleMesh:
         """Return one instance as a mesh, without the parts that it lacks.
@@ -208,10 +199,9 @@ class CompiledModel:
             ParameterError: the array has not P columns or holds NaN.
             ModelError: ``steps`` is out of range.
         """
-        values = self._settled(values)
+        settled, present = self._settled(values)
         triangles = self.surface_triangles(steps)
-        present = self._present(values)
-        for start, chunk in self._surface_chunks(values, steps):
+        for start, chunk in self._surface_chunks(settled, present, steps):
             for row, points in enumerate(chunk, start):
                 if present[row].all():
                     yield TriangleMesh(points, triangles)
@@ -222,32 +212,14 @@ class CompiledModel:
 
     def surface_parts(self, steps: int = SUBDIVISION_STEPS) -> Int[np.ndarray, " V"]:
         """Return the part number of each vertex after ``steps`` subdivisions; -1 belongs to no part."""
-        with self._growing:
-            self.surface_polygons(steps)
-            while len(self._level_parts) <= steps:
-                level = self._levels[len(self._level_parts) - 1]
-                refined = np.full(level.refined.n_vertices, ALWAYS)
-                quads = np.array(level.refined.loops)  # each begins at a vertex of the level before
-                refined[quads] = self._level_parts[-1][quads[:, :1]]
-                self._level_parts.append(refined)
-            return self._level_parts[steps]
+        return self._surface.parts(steps)
 
-    def _batches(self, count: int, row_bytes: int) -> Iterator[slice]:
-        size = max(1, _CHUNK_BYTES // row_bytes)
-        return (slice(start, start + size) for start in range(0, count, size))
-
-    def _control_rows(self, settled: Values) -> Float[np.ndarray, "B V 3"]:
-        return self._executable.run(settled, self._present(settled))
-
-    def _present(self, settled: Values) -> Bool[np.ndarray, "B N"]:
-        return self.space.holds_each([part.present_when for part in self.model.parts], settled)
-
-    def _settled(self, values: Float[np.ndarray, "B P"]) -> Values:
+    def _settled(self, values: Float[np.ndarray, "B P"]) -> tuple[Values, Present]:
         if values.ndim != 2 or values.shape[1] != self.n_parameters:
             raise ParameterError(f"values of shape {values.shape} are no batch of {self.n_parameters} parameters")
         if not np.isfinite(values).all():
             raise ParameterError("a value is not finite")
-        return self.space.settle(values)
+        return self.space.settle_and_hold(self._presence, values)
 
 
 def compile_model(model: ProceduralModel) -> CompiledModel:

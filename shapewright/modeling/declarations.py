@@ -11,6 +11,7 @@ from shapewright.modeling.elements import Axis, Element
 from shapewright.modeling.parameter import Parameter, ParameterTarget
 from shapewright.modeling.part import Part
 from shapewright.modeling.symmetry import NO_SYMMETRY, Symmetry
+from shapewright.modeling.units import ParameterKind, kind_of_unit
 
 
 class Declarations:
@@ -30,12 +31,25 @@ class Declarations:
         *,
         unit: str | None = None,
         base_value: float | None = None,
+        kind: ParameterKind | None = None,
         active_when: Sequence[Condition] = (),
     ) -> None:
-        """Declare a parameter; the order of declaration is the order in the model."""
-        placeholder = (ParameterTarget(0, ""),)
+        """Declare a parameter; the order of declaration is the order in the model.
+
+        Its kind need not be given where the unit tells it.
+        """
         self._declare(
-            Parameter(name, label, minimum, maximum, placeholder, unit, base_value, active_when=tuple(active_when))
+            Parameter(
+                name,
+                label,
+                minimum,
+                maximum,
+                targets=(ParameterTarget(0, ""),),  # a placeholder
+                unit=unit,
+                base_value=base_value,
+                active_when=tuple(active_when),
+                kind=kind or kind_of_unit(unit),
+            )
         )
 
     def switch(

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
+from scipy import sparse
 
 from shapewright.modeling.opcodes import ALWAYS_BIT, HEADER
 from shapewright.modeling.program import SCRATCH, Instruction, Program, Rows
@@ -46,6 +47,15 @@ class Executable:
         return points
 
 
+def multiply(
+    matrix: sparse.csr_array, points: Float[np.ndarray, "B V 3"], products: Float[np.ndarray, "B W 3"]
+) -> None:
+    """Write ``matrix @ points`` (W, 3) of each instance to ``products``."""
+    from shapewright.modeling import program_kernels
+
+    program_kernels.multiply(matrix.indptr, matrix.indices, matrix.data, points, products)
+
+
 def carry_out(program: Program, positions: Float[np.ndarray, "V 3"]) -> Float[np.ndarray, "R 3"]:
     """Return what a program makes of the positions at x = 1: the vertices, then the scratch rows."""
     return _carried_out(program, _numbered(program.instructions, len(positions)), positions)
@@ -65,15 +75,15 @@ def link(program: Program, part_of: Rows, wanted: Rows) -> Executable:
     start = _carried_out(program, fixed, np.zeros((n_vertices, 3)))
     varying, guards = _guarded(varying, n_rows, part_of, wanted)
     new_row, old_rows = _compacted(varying, n_vertices, program)
-    moved = [replace(one, sources=new_row[one.sources], targets=new_row[one.targets]) for one in varying]
-    return _executable(program, moved, guards, start[old_rows], wanted)
+    return _executable(program, varying, guards, start[old_rows], wanted, new_row)
 
 
 def _numbered(instructions: Sequence[Instruction], n_vertices: int) -> list[Instruction]:
     """Put the scratch rows after the vertices."""
 
     def numbered(rows: Rows) -> Rows:
-        return np.where(rows < SCRATCH, rows, rows - SCRATCH + n_vertices)
+        is_scratch = rows >= SCRATCH
+        return np.where(is_scratch, rows - SCRATCH + n_vertices, rows) if is_scratch.any() else rows
 
     return [replace(one, sources=numbered(one.sources), targets=numbered(one.targets)) for one in instructions]
 
@@ -82,7 +92,8 @@ def _carried_out(
     program: Program, instructions: Sequence[Instruction], positions: Float[np.ndarray, "V 3"]
 ) -> Float[np.ndarray, "R 3"]:
     start = np.concatenate([positions, np.zeros((program.n_scratch, 3))])
-    executable = _executable(program, instructions, [_ALWAYS] * len(instructions), start, np.arange(len(start)))
+    every_row = np.arange(len(start))
+    executable = _executable(program, instructions, [_ALWAYS] * len(instructions), start, every_row, every_row)
     plain = replace(executable, changes=executable.changes[:0], angles=executable.angles[:0])
     return plain.run(np.ones((1, 0)), np.ones((1, 0), dtype=bool))[0]
 
@@ -93,15 +104,21 @@ def _executable(
     guards: Sequence[np.int64],
     start: Float[np.ndarray, "R 3"],
     wanted: Rows,
+    new_row: Rows,
 ) -> Executable:
-    code: list[Rows] = []
-    for one, guard in zip(instructions, guards, strict=True):
-        length = HEADER + len(one.numbers) + len(one.sources) + len(one.targets)
+    lengths = [HEADER + len(one.numbers) + len(one.sources) + len(one.targets) for one in instructions]
+    code = np.empty(sum(lengths), dtype=np.int64)
+    at = 0
+    for one, guard, length in zip(instructions, guards, lengths, strict=True):
         header = (one.opcode, length, guard, one.slot, len(one.numbers), len(one.sources), *one.numbers)
-        code += [np.array(header, dtype=np.int64), one.sources, one.targets]
+        targets = at + length - len(one.targets)
+        code[at : at + len(header)] = header
+        code[at + len(header) : targets] = new_row[one.sources]
+        code[targets : at + length] = new_row[one.targets]
+        at += length
     return Executable(
         start=start,
-        code=np.concatenate(code) if code else np.zeros(0, dtype=np.int64),
+        code=code,
         constants=np.array(program.constants, dtype=np.float64),
         slots=np.array(program.slots, dtype=np.float64),
         changes=np.array(program.changes, dtype=np.int64).reshape(-1, 3),

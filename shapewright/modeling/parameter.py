@@ -24,6 +24,7 @@ from shapewright.modeling.fields import (
     whole_number,
     write_number,
 )
+from shapewright.modeling.units import KINDS, ParameterKind, kind_of_unit
 
 NAME_PATTERN = "^[a-z][a-z0-9_]{0,63}$"
 MAX_LABEL = 200
@@ -56,6 +57,8 @@ class Parameter:
             A switch has the options of 0 and 1, any other choice those of 1, 2, ...
         active_when: conditions on parameters before it; where one does not hold the parameter is not active, and 1.
         limits: how its range follows values of parameters before it.
+        kind: what x times ``base_value`` is: a length, an angle or a ratio; ``None`` if the author does not say,
+            and of a choice. If all lengths of a model grow alike the instance grows, and nothing else changes.
     """
 
     name: str
@@ -68,6 +71,7 @@ class Parameter:
     options: tuple[str, ...] = ()
     active_when: tuple[Condition, ...] = ()
     limits: tuple[Limit, ...] = ()
+    kind: ParameterKind | None = None
 
     def __post_init__(self) -> None:
         if not re.fullmatch(NAME_PATTERN, self.name):
@@ -95,6 +99,10 @@ class Parameter:
             raise ModelError(f"{self.name!r} has options, and therefore neither limits nor a base value")
         if self.unit is not None and len(self.unit) > MAX_UNIT:
             raise ModelError(f"the unit of {self.name!r} is longer than {MAX_UNIT} characters")
+        if self.kind is not None and self.options:
+            raise ModelError(f"{self.name!r} has options, and therefore no kind")
+        if self.kind is not None and kind_of_unit(self.unit) not in (None, self.kind):
+            raise ModelError(f"{self.name!r} is shown in {self.unit!r}, and is therefore not of kind {self.kind!r}")
         if self.base_value is not None and not abs(self.base_value) <= MAX_MAGNITUDE:
             raise ModelError(f"the base value of {self.name!r} is beyond {MAX_MAGNITUDE:g} or no number")
 
@@ -128,6 +136,9 @@ class Parameter:
         if not isinstance(item["targets"], list) or len(item["targets"]) > MAX_TARGETS:
             raise ModelError(f"a list of at most {MAX_TARGETS} is needed", where=f"{where}.targets")
         minimum, maximum = (read_number(bound, f"{where}.range[{i}]") for i, bound in enumerate(bounds))
+        kind = item.get("kind")
+        if kind is not None and kind not in KINDS:
+            raise ModelError(f"{shown(kind)} is none of {', '.join(KINDS)}", where=f"{where}.kind")
         try:
             return cls(
                 name=item["name"],
@@ -140,6 +151,7 @@ class Parameter:
                 options=tuple(options),
                 active_when=read_conditions(item.get("active_when", []), f"{where}.active_when"),
                 limits=read_limits(item.get("limits", []), f"{where}.limits"),
+                kind=kind,
             )
         except ModelError as error:
             raise ModelError(error.message, where=error.where or where) from None
@@ -154,6 +166,8 @@ class Parameter:
             "range": [write_number(self.minimum), write_number(self.maximum)],
             "targets": [{"operation": t.operation, "mode": t.mode} for t in self.targets],
         }
+        if self.kind is not None:
+            document["kind"] = self.kind
         if self.options:
             document["options"] = list(self.options)
         if self.active_when:
@@ -171,6 +185,7 @@ class Parameter:
                 "name": {"type": "string", "pattern": NAME_PATTERN},
                 "label": {"type": "string", "pattern": "\\S", "maxLength": MAX_LABEL},
                 "unit": {"type": ["string", "null"], "maxLength": MAX_UNIT},
+                "kind": {"enum": [*KINDS, None]},
                 "base_value": {**NUMBER_SCHEMA, "type": ["number", "null"]},
                 "range": {
                     "type": "array",
@@ -209,7 +224,7 @@ class Parameter:
         }
 
 
-_FIELDS = {"name", "label", "range", "targets", "unit", "base_value", "options", "active_when", "limits"}
+_FIELDS = {"name", "label", "range", "targets", "unit", "kind", "base_value", "options", "active_when", "limits"}
 
 
 def _read_target(value: Any, where: str) -> ParameterTarget:

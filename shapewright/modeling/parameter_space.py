@@ -4,10 +4,12 @@ A parameter may depend on those before it only, so one pass in their order settl
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from shapewright.errors import ModelError, ParameterError
 from shapewright.modeling.dependence import Condition, Limit
@@ -15,9 +17,23 @@ from shapewright.modeling.fields import shown
 from shapewright.modeling.parameter import Parameter
 
 Values = Float[np.ndarray, "B P"]
-Column = Float[np.ndarray, " B"]
 _SLACK = 1e-9
 """Share of a range by which a value may miss a bound that was computed from another value."""
+
+
+@dataclass(frozen=True, eq=False)
+class FlatConditions:
+    """N lists of conditions, one after the other.
+
+    Attributes:
+        starts: where each begins, and where the last one ends; N + 1 numbers.
+        columns: of the parameters.
+        ranges: the smallest and largest x.
+    """
+
+    starts: Int[np.ndarray, " N1"]
+    columns: Int[np.ndarray, " C"]
+    ranges: Float[np.ndarray, "C 2"]
 
 
 class ParameterSpace:
@@ -66,51 +82,52 @@ class ParameterSpace:
         Raises:
             ParameterError: a fixed value that :meth:`values_from_mapping` would refuse whatever the others are.
         """
-        given = self._checked(fixed or {})
-        shares = rng.random((count, len(self.parameters)))
-        values = np.empty_like(shares)
-        for i, low, high, active in self._bounds(values):
-            if i in given:
-                drawn = np.clip(given[i], low, high)
-            elif self.parameters[i].options:
-                drawn = np.minimum(low + np.floor(shares[:, i] * (high - low + 1.0)), high)
-            else:
-                drawn = low + shares[:, i] * (high - low)
-            values[:, i] = np.where(active, drawn, 1.0)
-        return values
+        given = np.full(len(self.parameters), np.nan)
+        for column, value in self._checked(fixed or {}).items():
+            given[column] = value
+        drawn = rng.random((count, len(self.parameters)))
+        self._walk("DRAW", drawn, given)
+        return drawn
 
     def settle(self, values: Values) -> Values:
         """Return the rows settled: moved into their ranges, options rounded, 1 where not active.
 
         Settled rows stay as they are, and the instance of a row is the instance of the settled row.
         """
-        settled = np.array(values, dtype=np.float64)
-        for i, low, high, active in self._bounds(settled):
-            column = np.rint(settled[:, i]) if self.parameters[i].options else settled[:, i]
-            settled[:, i] = np.where(active, np.clip(column, low, high), 1.0)
+        settled = np.array(values, dtype=np.float64, order="C")
+        self._walk("SETTLE", settled)
         return settled
 
     def active(self, values: Values) -> Bool[np.ndarray, "B P"]:
         """Tell which parameters are active in settled rows."""
-        active = np.ones(values.shape, dtype=bool)
-        for i, column in self._activity(values).items():
-            active[:, i] = column
-        return active
+        return self._walk("KEEP", _plain(values))[2]
 
     def ranges(self, values: Values) -> tuple[Values, Values]:
         """Return the smallest and largest x of each parameter in settled rows."""
-        lowest, highest = np.empty(values.shape), np.empty(values.shape)
-        for i, low, high, _ in self._bounds(values):
-            lowest[:, i], highest[:, i] = low, high
-        return lowest, highest
+        return self._walk("KEEP", _plain(values))[:2]
 
-    def holds_each(self, each: Sequence[Sequence[Condition]], values: Values) -> Bool[np.ndarray, "B N"]:
-        """Tell in which settled rows all conditions of each list hold; one on an inactive parameter does not."""
-        activity = self._activity(values)
-        held = np.empty((len(values), len(each)), dtype=bool)
-        for number, conditions in enumerate(each):
-            held[:, number] = self._hold(conditions, values, activity)
-        return held
+    def settle_and_hold(self, lists: FlatConditions, values: Values) -> tuple[Values, Bool[np.ndarray, "B N"]]:
+        """Return the rows settled, and in which of them all conditions of each list hold.
+
+        A condition on a parameter that is not active does not hold.
+        """
+        from shapewright.modeling import parameter_kernels
+
+        settled = np.array(values, dtype=np.float64, order="C")
+        _, _, active = self._walk("SETTLE", settled)
+        held = np.empty((len(settled), len(lists.starts) - 1), dtype=bool)
+        parameter_kernels.hold_each(settled, active, lists.starts, lists.columns, lists.ranges, held)
+        return settled, held
+
+    def flat(self, lists: Sequence[Sequence[Condition]]) -> FlatConditions:
+        """Return lists of conditions as :meth:`settle_and_hold` needs them."""
+        conditions = [condition for each in lists for condition in each]
+        ranges = [(condition.minimum, condition.maximum) for condition in conditions]
+        return FlatConditions(
+            starts=_starts(lists),
+            columns=np.array([self.columns[condition.parameter] for condition in conditions], dtype=np.int64),
+            ranges=np.array(ranges, dtype=np.float64).reshape(-1, 2),
+        )
 
     def values_from_mapping(self, named: Mapping[str, float]) -> Float[np.ndarray, " P"]:
         """Return one settled row from names; what is not named is 1, or as near as its range allows.
@@ -121,14 +138,15 @@ class ParameterSpace:
         values = self.base_values()
         for column, value in self._checked(named).items():
             values[column] = value
-        settled = self.settle(values[None])
-        for i, low, high, active in self._bounds(settled):
-            parameter = self.parameters[i]
+        settled = values[None].copy()
+        lowest, highest, active = self._walk("SETTLE", settled)
+        for i, parameter in enumerate(self.parameters):
             slack = _SLACK * (parameter.maximum - parameter.minimum)
-            if parameter.name in named and active[0] and abs(settled[0, i] - values[i]) > slack:
+            if parameter.name in named and active[0, i] and abs(settled[0, i] - values[i]) > slack:
                 others = ", ".join(dict.fromkeys(limit.parameter for limit in parameter.limits))
+                bounds = f"[{lowest[0, i]:g}, {highest[0, i]:g}]"
                 raise ParameterError(
-                    f"{shown(named[parameter.name])} is outside of [{low[0]:g}, {high[0]:g}], given {others}",
+                    f"{shown(named[parameter.name])} is outside of {bounds}, given {others}",
                     where=f"values.{parameter.name}",
                 )
         row: Float[np.ndarray, " P"] = settled[0]
@@ -153,37 +171,32 @@ class ParameterSpace:
             known = ", ".join(f"{x:g} ({option})" for x, option in parameter.named_options())
             raise ParameterError(f"{shown(value)} is no option; there are: {known}", where=where)
 
-    def _bounds(self, values: Values) -> Iterator[tuple[int, Column, Column, Bool[np.ndarray, " B"]]]:
-        """Yield (column, lowest, highest, active) in order; the columns before must be settled by then."""
-        activity: dict[int, Bool[np.ndarray, " B"]] = {}
-        for i, parameter in enumerate(self.parameters):
-            activity[i] = self._hold(parameter.active_when, values, activity)
-            low, high = (np.full(len(values), bound) for bound in (parameter.minimum, parameter.maximum))
-            for limit in parameter.limits:
-                bound = limit.offset + limit.factor * values[:, self.columns[limit.parameter]]
-                if limit.bound == "minimum":
-                    low = np.maximum(low, bound)
-                else:
-                    high = np.minimum(high, bound)
-            if parameter.limits:
-                low = np.minimum(low, high)  # rounding, where they meet
-            yield i, low, high, activity[i]
+    def _walk(
+        self, how: str, values: Values, fixed: Float[np.ndarray, " P"] | None = None
+    ) -> tuple[Values, Values, Bool[np.ndarray, "B P"]]:
+        """Change values in place, as the kernel's constant ``how`` says; return lowest, highest and activity."""
+        from shapewright.modeling import parameter_kernels
 
-    def _activity(self, values: Values) -> dict[int, Bool[np.ndarray, " B"]]:
-        activity: dict[int, Bool[np.ndarray, " B"]] = {}
-        for i, parameter in enumerate(self.parameters):
-            activity[i] = self._hold(parameter.active_when, values, activity)
-        return activity
+        lowest, highest, active = np.empty(values.shape), np.empty(values.shape), np.empty(values.shape, dtype=bool)
+        parameter_kernels.walk(
+            *(getattr(parameter_kernels, how), values, self.minimum if fixed is None else fixed),
+            *(lowest, highest, active, self.minimum, self.maximum, *self._rules),
+        )
+        return lowest, highest, active
 
-    def _hold(
-        self, conditions: Sequence[Condition], values: Values, activity: Mapping[int, Bool[np.ndarray, " B"]]
-    ) -> Bool[np.ndarray, " B"]:
-        all_hold = np.ones(len(values), dtype=bool)
-        for condition in conditions:
-            column = self.columns[condition.parameter]
-            x = values[:, column]
-            all_hold &= activity[column] & (condition.minimum <= x) & (x <= condition.maximum)
-        return all_hold
+    @cached_property
+    def _rules(self) -> tuple[Float[np.ndarray, "..."] | Int[np.ndarray, "..."] | Bool[np.ndarray, "..."], ...]:
+        """Options, conditions and limits as the kernel needs them."""
+        conditions = self.flat([parameter.active_when for parameter in self.parameters])
+        limits = [limit for parameter in self.parameters for limit in parameter.limits]
+        return (
+            np.array([bool(parameter.options) for parameter in self.parameters], dtype=bool),
+            *(conditions.starts, conditions.columns, conditions.ranges),
+            _starts([parameter.limits for parameter in self.parameters]),
+            np.array([self.columns[limit.parameter] for limit in limits], dtype=np.int64),
+            np.array([limit.bound == "maximum" for limit in limits], dtype=bool),
+            np.array([(limit.offset, limit.factor) for limit in limits], dtype=np.float64).reshape(-1, 2),
+        )
 
     def _check(self, i: int) -> None:
         parameter = self.parameters[i]
@@ -210,3 +223,12 @@ class ParameterSpace:
         columns = [(self.columns[name], factor) for name, factor in terms]
         least = (min(factor * self.minimum[i], factor * self.maximum[i]) for i, factor in columns)
         return float(high.offset - low.offset + sum(least))
+
+
+def _plain(values: Values) -> Values:
+    return np.ascontiguousarray(values, dtype=np.float64)
+
+
+def _starts(lists: Sequence[Sequence[object]]) -> Int[np.ndarray, " N1"]:
+    """Return where each list begins when they are put one after the other, and where the last one ends."""
+    return np.cumsum([0, *map(len, lists)])

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from shapewright.errors import ModelError
-from shapewright.modeling.fields import read_object, shown
+from shapewright.modeling.fields import MAX_MAGNITUDE, read_number, read_object, shown, write_number
 from shapewright.modeling.operations import OPERATIONS, Base, Operation
 from shapewright.modeling.parameter import NAME_PATTERN, Parameter
 from shapewright.modeling.parameter_space import ParameterSpace
@@ -39,6 +39,8 @@ class ProceduralModel:
         closed: whether every instance is meant to be a closed surface; checked against the topology.
         parts: optional parts; a component is in one at most.
         symmetry: what leaves every instance as it is; a declaration that a validation checks against meshes.
+        unit_m: meters that one unit of the coordinates stands for in objects of the class as they are in the world;
+            ``None`` if the author does not say. A query whose own unit is known has a known scale with it.
     """
 
     name: str
@@ -49,12 +51,15 @@ class ProceduralModel:
     closed: bool = True
     parts: tuple[Part, ...] = ()
     symmetry: Symmetry = NO_SYMMETRY
+    unit_m: float | None = None
 
     def __post_init__(self) -> None:
         _check_name(self.name, "name")
         _check_name(self.class_name, "class")
         if len(self.description) > MAX_DESCRIPTION:
             raise ModelError(f"a text of at most {MAX_DESCRIPTION} characters is needed", where="description")
+        if self.unit_m is not None and not 0 < self.unit_m <= MAX_MAGNITUDE:
+            raise ModelError(f"expected a positive number of meters, got {self.unit_m:g}", where="unit_m")
         if not self.operations or not isinstance(self.operations[0], Base):
             raise ModelError("the first operation must be a base", where="operations")
         for name, most in _MAX_ITEMS.items():
@@ -118,6 +123,7 @@ class ProceduralModel:
             raise ModelError(f"a text of at most {MAX_DESCRIPTION} characters is needed", where="description")
         if not isinstance(closed, bool):
             raise ModelError("true or false is needed", where="closed")
+        unit_m = item.get("unit_m")
         for name, most in _MAX_ITEMS.items():
             if not isinstance(item.get(name, []), list):
                 raise ModelError("a list is needed", where=name)
@@ -134,6 +140,7 @@ class ProceduralModel:
             closed=closed,
             parts=tuple(Part.from_document(p, f"parts[{i}]") for i, p in enumerate(item.get("parts", []))),
             symmetry=Symmetry.from_document(item.get("symmetry", {}), "symmetry"),
+            unit_m=None if unit_m is None else read_number(unit_m, "unit_m"),
         )
 
     @classmethod
@@ -162,6 +169,7 @@ class ProceduralModel:
             "class": self.class_name,
             "description": self.description,
             "closed": self.closed,
+            "unit_m": None if self.unit_m is None else write_number(self.unit_m),
             "symmetry": self.symmetry.to_document(),
             "operations": [operation.to_document() for operation in self.operations],
             "parameters": [parameter.to_document() for parameter in self.parameters],
@@ -213,6 +221,7 @@ _PROPERTIES: dict[str, Any] = {
     "class": {"type": "string", "pattern": NAME_PATTERN},
     "description": {"type": "string", "maxLength": MAX_DESCRIPTION},
     "closed": {"type": "boolean"},
+    "unit_m": {"type": ["number", "null"], "exclusiveMinimum": 0, "maximum": MAX_MAGNITUDE},
     "symmetry": Symmetry.schema(),
     "operations": {
         "type": "array",

@@ -169,6 +169,15 @@ def _compiled(function: Any) -> Any:
     return njit(cache=True, nogil=True, error_model="numpy")(function)
 
 
+@_compiled
+@no_type_check
+def _aligned(size):
+    """Return a new array that begins where a cache line does, so that no lanes lie across two lines."""
+    array = np.empty(size + WIDTH)
+    skipped = (-(array.ctypes.data // 8)) % WIDTH
+    return array[skipped : skipped + size]
+
+
 # ---------------------------------------------------------------------- points and frames
 
 
@@ -618,9 +627,9 @@ def run(start, code, constants, slots, changes, angles, wanted, values, present,
     ``wanted`` (V,), ``values`` (B, P), ``present`` (B, N) -> ``points`` (B, V, 3). Lanes without an instance, in the
     last block, repeat the last one.
     """
-    state = np.empty(start.shape[0] * _ROW)
-    amounts = np.empty(slots.shape[0] * WIDTH)
-    there = np.empty(present.shape[1] * WIDTH)
+    state = _aligned(start.shape[0] * _ROW)
+    amounts = _aligned(slots.shape[0] * WIDTH)
+    there = _aligned(present.shape[1] * WIDTH)
     for slot in range(slots.shape[0]):
         _store(amounts, slot * WIDTH, _lanes(slots[slot]))
     for first in range(0, values.shape[0], WIDTH):
@@ -635,3 +644,29 @@ def run(start, code, constants, slots, changes, angles, wanted, values, present,
                 at = wanted[i] * _ROW + axis * WIDTH
                 for lane in range(count):
                     points[first + lane, i, axis] = state[at + lane]
+
+
+@_compiled
+@no_type_check
+def multiply(starts, columns, weights, points, products):
+    """Multiply a sparse matrix (W, V) in CSR form by the points of each instance.
+
+    ``points`` (B, V, 3) -> ``products`` (B, W, 3).
+    """
+    state = _aligned(points.shape[1] * _ROW)
+    row = _aligned(_ROW)
+    for first in range(0, points.shape[0], WIDTH):
+        count = min(WIDTH, points.shape[0] - first)
+        for v in range(points.shape[1]):
+            for axis in range(3):
+                for lane in range(WIDTH):
+                    state[v * _ROW + axis * WIDTH + lane] = points[first + min(lane, count - 1), v, axis]
+        for w in range(products.shape[1]):
+            x, y, z = _lanes(0.0), _lanes(0.0), _lanes(0.0)
+            for k in range(starts[w], starts[w + 1]):
+                point, weight = _point(state, columns[k]), weights[k]
+                x, y, z = x + weight * point[0], y + weight * point[1], z + weight * point[2]
+            _put(row, 0, x, y, z)
+            for lane in range(count):
+                for axis in range(3):
+                    products[first + lane, w, axis] = row[axis * WIDTH + lane]

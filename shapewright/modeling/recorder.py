@@ -51,12 +51,16 @@ class Recorder(Declarations):
     not exist or an impossible change.
     """
 
-    def __init__(self, name: str, class_name: str, *, description: str = "", closed: bool = True) -> None:
+    def __init__(
+        self, name: str, class_name: str, *, description: str = "", closed: bool = True, unit_m: float | None = None
+    ) -> None:
+        """Begin an empty object; see :class:`ProceduralModel` for the arguments."""
         super().__init__()
         self.name = name
         self.class_name = class_name
         self.description = description
         self.closed = closed
+        self.unit_m = unit_m
         self.mesh = ControlMesh()
         self._positions: Float[np.ndarray, "V 3"] = np.zeros((0, 3))
         self._operations: list[Operation] = []
@@ -279,6 +283,7 @@ class Recorder(Declarations):
             self.closed,
             tuple(self._parts),
             self._symmetry,
+            self.unit_m,
         )
         compile_model(model)
         return model

@@ -48,6 +48,19 @@ class Symmetry:
             found[f"turn {angle_deg:g} deg about {self.axis}"] = Turn(self.axis, angle_deg).matrix()
         return found
 
+    def rotations(self) -> Float[np.ndarray, "G 3 3"]:
+        """Return all turns that the maps make together, the identity first: two mirrors are half a turn."""
+        mirrors = [np.eye(3)]
+        for axis in self.mirrors:
+            mirrors += [Mirror(axis).matrix() @ other for other in mirrors]
+        turns = [np.eye(3)]
+        if self.axis is not None:
+            turns = [Turn(self.axis, 360.0 * step / self.order).matrix() for step in range(self.order)]
+        maps = np.array([mirror @ turn for mirror in mirrors for turn in turns])
+        proper = maps[np.linalg.det(maps) > 0]
+        _, first = np.unique(proper.round(6) + 0.0, axis=0, return_index=True)
+        return np.asarray(proper[np.sort(first)])
+
     @classmethod
     def from_document(cls, document: Any, where: str) -> "Symmetry":
         """Make it from its JSON object; raises ModelError."""

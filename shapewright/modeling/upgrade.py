@@ -5,14 +5,33 @@ from typing import Any
 
 from shapewright.errors import ModelError
 from shapewright.modeling.fields import shown, whole_number
+from shapewright.modeling.units import kind_of_unit
 
 FORMAT = "shapewright-procedural-model"
-VERSION = 2
+VERSION = 3
 
 Upgrade = Callable[[dict[str, Any]], dict[str, Any]]
 
+
+def _with_kinds(document: dict[str, Any]) -> dict[str, Any]:
+    """Give each parameter the kind that its unit tells; what a unit of the coordinates stands for stays unknown."""
+    parameters = document.get("parameters")
+    if not isinstance(parameters, list):  # refused when it is read
+        return document
+    return {**document, "parameters": [_with_kind(parameter) for parameter in parameters]}
+
+
+def _with_kind(parameter: Any) -> Any:
+    if not isinstance(parameter, dict):
+        return parameter
+    unit = parameter.get("unit")
+    kind = kind_of_unit(unit) if isinstance(unit, str) and not parameter.get("options") else None
+    return parameter if kind is None else {**parameter, "kind": kind}
+
+
 UPGRADES: Mapping[int, Upgrade] = {
     1: lambda document: document,  # version 2 only adds optional fields
+    2: _with_kinds,
 }
 """``UPGRADES[n]`` turns a document of version n into one of version n + 1. A new version adds one line here."""
 

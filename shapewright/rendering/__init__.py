@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from shapewright.rendering.images import render_images
     from shapewright.rendering.mesh_sheet import LabelledMesh, compose_mesh_sheet
     from shapewright.rendering.pictures import compose_grid, compose_side_by_side, render_mesh
+    from shapewright.rendering.residual_pictures import compose_residuals
     from shapewright.rendering.styles import SCALE_RANGE, STYLES, WINDOW, ImageStyle
     from shapewright.rendering.views import even_views, random_views, spread_views, three_quarter_view
 
@@ -24,6 +25,7 @@ _HOMES = {
     "compose_contact_sheet": "contact_sheet",
     "compose_grid": "pictures",
     "compose_mesh_sheet": "mesh_sheet",
+    "compose_residuals": "residual_pictures",
     "compose_side_by_side": "pictures",
     "context_is_open": "context",
     "even_views": "views",
@@ -45,6 +47,7 @@ __all__ = [
     "compose_contact_sheet",
     "compose_grid",
     "compose_mesh_sheet",
+    "compose_residuals",
     "compose_side_by_side",
     "context_is_open",
     "even_views",

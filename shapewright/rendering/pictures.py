@@ -95,10 +95,12 @@ def draw_together(
     rotation: Float[np.ndarray, "3 3"],
     size: int,
     style: Style,
+    colors: Sequence[Float[np.ndarray, "_ 3"]] | None = None,
 ) -> UInt8[np.ndarray, "N H W 3"]:
     """One picture a colour number, each of its mesh, all under the framing that shows every mesh whole.
 
-    Meshes beyond the last colour are framed with the others and not drawn.
+    Meshes beyond the last colour are framed with the others and not drawn. With ``colors`` of the vertices of each
+    mesh (``shaded`` only) the numbers only count.
     """
     if size < 1:
         raise RenderingError("a picture has at least one pixel", where="size")
@@ -114,6 +116,9 @@ def draw_together(
     positions = ((np.concatenate(corners) - origin) * (FILL * WINDOW / reach)).astype(np.float32)
     triangles = np.concatenate([np.arange(count) for count in sizes]).reshape(-1, 3)
     normals = np.concatenate([corner_normals(mesh).reshape(-1, 3) for mesh in meshes])
+    of_corners = None
+    if colors is not None:
+        of_corners = np.concatenate([own[mesh.faces].reshape(-1, 3) for mesh, own in zip(meshes, colors, strict=True)])
     with shared_context() as context:
         renderer = renderer_for(context)
         renderer.tiles_a_batch(size, look)
@@ -127,6 +132,7 @@ def draw_together(
                 rectangles=np.array([[-WINDOW, -WINDOW, WINDOW, WINDOW]]),
                 tints=np.array([tint]),
                 normals=normals,
+                colors=None if of_corners is None else of_corners.astype(np.float32),
             )
             renderer.draw(scene, out[number : number + 1], look)
     return out

@@ -34,6 +34,7 @@ class Scene:
         rectangles: what each picture's object covers at most: left, bottom, right, top after placing.
         tints: colour number of each picture's object, from 1.
         normals: of each vertex where smooth shading is wanted.
+        colors: red, green, blue in 0..1 of each vertex, for ``shaded``; they replace the color of the number.
     """
 
     positions: Float32[np.ndarray, "V 3"]
@@ -43,6 +44,7 @@ class Scene:
     rectangles: Float[np.ndarray, "N 4"]
     tints: Int[np.ndarray, " N"]
     normals: Float32[np.ndarray, "V 3"] | None = None
+    colors: Float32[np.ndarray, "V 3"] | None = None
 
 
 @dataclass
@@ -55,10 +57,12 @@ class _Target:
     surface_frame: Any
     picture_frame: Any
     tiles: int
+    colors: Any = None
 
     def release(self) -> None:
-        for part in (self.surface_frame, self.picture_frame, self.surface, self.depth, self.picture):
-            part.release()
+        for part in (self.surface_frame, self.picture_frame, self.surface, self.depth, self.picture, self.colors):
+            if part is not None:
+                part.release()
 
 
 @dataclass
@@ -67,7 +71,7 @@ class Renderer:
 
     context: Any
     _programs: dict[tuple[str, ...], Any] = field(default_factory=dict)
-    _target_key: tuple[int, int] | None = None
+    _target_key: tuple[int, int, bool] | None = None
     _target: _Target | None = None
 
     def tiles_a_batch(self, size: int, style: Style) -> int:
@@ -88,13 +92,15 @@ class Renderer:
         """Draw one batch and read it back into ``out``, whose rows run from top to bottom."""
         size = out.shape[1]
         side = size * style.oversampling
-        target = self._target_for(size, style.oversampling, len(out))
+        target = self._target_for(size, style.oversampling, len(out), colored=scene.colors is not None)
         self._draw_surface(scene, target, side, window)
-        program = self._program("picture.vert", "edges_common", f"{style.shader}.frag")
+        colored = ("COLORED",) if scene.colors is not None else ()
+        program = self._program("picture.vert", "edges_common", f"{style.shader}.frag", *colored)
         spacing = 2.0 * window / (min(style.oversampling, 2) * size)
         self._set(
             program,
             surface=0,
+            surface_colors=1,
             picture_size=size,
             oversampling=style.oversampling,
             sample_spacing=spacing,
@@ -110,6 +116,8 @@ class Renderer:
         target.picture_frame.clear(*style.background, viewport=viewport)
         self.context.enable_only(moderngl.NOTHING)
         target.surface.use(0)
+        if target.colors is not None:
+            target.colors.use(1)
         with ExitStack() as stack:
             rectangles = self.context.buffer(scene.rectangles.astype(np.float32))
             stack.callback(rectangles.release)
@@ -120,7 +128,8 @@ class Renderer:
 
     def _draw_surface(self, scene: Scene, target: _Target, side: int, window: float) -> None:
         smooth = ("SMOOTH",) if scene.normals is not None else ()
-        program = self._program("geometry.vert", "geometry.frag", *smooth)
+        colored = ("COLORED",) if scene.colors is not None else ()
+        program = self._program("geometry.vert", "geometry.frag", *smooth, *colored)
         self._set(
             program,
             window=window,
@@ -150,6 +159,8 @@ class Renderer:
             ]
             if scene.normals is not None:
                 content.append((buffer(scene.normals), "3f", "in_normal"))
+            if scene.colors is not None:
+                content.append((buffer(scene.colors), "3f", "in_color"))
             corners = buffer(scene.triangles.astype(np.uint32))
             vertex_array = self.context.vertex_array(program, content, index_buffer=corners)
             stack.callback(vertex_array.release)
@@ -175,8 +186,8 @@ class Renderer:
             if name in program:
                 program[name].value = value
 
-    def _target_for(self, size: int, oversampling: int, tiles: int) -> _Target:
-        key = (size, oversampling)
+    def _target_for(self, size: int, oversampling: int, tiles: int, *, colored: bool) -> _Target:
+        key = (size, oversampling, colored)
         if self._target is not None and (self._target_key != key or self._target.tiles < tiles):
             self._target.release()
             self._target = None
@@ -184,15 +195,17 @@ class Renderer:
             side = size * oversampling
             surface = self.context.texture((side, side * tiles), 4)
             surface.filter = (moderngl.NEAREST, moderngl.NEAREST)
+            colors = self.context.texture((side, side * tiles), 4) if colored else None
             depth = self.context.depth_renderbuffer((side, side * tiles))
             picture = self.context.renderbuffer((size, size * tiles), 3)
             self._target = _Target(
                 surface=surface,
                 depth=depth,
                 picture=picture,
-                surface_frame=self.context.framebuffer([surface], depth),
+                surface_frame=self.context.framebuffer([surface] if colors is None else [surface, colors], depth),
                 picture_frame=self.context.framebuffer([picture]),
                 tiles=tiles,
+                colors=colors,
             )
             self._target_key = key
         return self._target

@@ -6,6 +6,7 @@ from chair_model import armchair
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from shapewright.distances.alignment import Pose
 from shapewright.errors import Cancelled
 from shapewright.estimation.hill_climbing import Candidate, HillClimb, SearchSpace, hill_climb, without_pose
 from shapewright.modeling import compile_model
@@ -120,3 +121,18 @@ def test_progress_never_falls_and_cancelling_leaves_the_best_so_far() -> None:
     assert reports == sorted(reports)
     assert best
     assert best[-1].distance == min(candidate.distance for candidate in best) < valley(np.zeros(3))
+
+
+def test_what_was_beaten_at_one_pose_may_win_at_another() -> None:
+    """The middle value is the start, is beaten, and is best of all from the pose that beat it."""
+    first, second = Pose(), Pose(translation=np.ones(3))
+    distances = {(0.0, first): 3.0, (1.0, first): 2.0, (0.0, second): 1.0}
+
+    def evaluate(values: np.ndarray, incumbent: Candidate) -> Candidate:
+        assert incumbent.pose is not None
+        distance = distances.get((float(values[0]), incumbent.pose), 9.0)
+        return Candidate(values, distance, second)
+
+    space = SearchSpace(lambda rows: np.clip(rows, 0.0, 1.0), ((),))
+    end = hill_climb(evaluate, Candidate(np.zeros(1), 3.0, first), space, (1.0,))
+    assert (end.best.values.tolist(), end.best.distance) == ([0.0], 1.0)

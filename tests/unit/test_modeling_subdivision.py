@@ -92,8 +92,8 @@ def test_chunks_make_up_the_batch(steps: int, monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_a_surface_of_too_many_weights_or_vertices_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("shapewright.modeling.compiled.MAX_SURFACE_WEIGHTS", 10_000)
-    monkeypatch.setattr("shapewright.modeling.compiled.MAX_SURFACE_VERTICES", 1000)
+    monkeypatch.setattr("shapewright.modeling.surface_levels.MAX_SURFACE_WEIGHTS", 10_000)
+    monkeypatch.setattr("shapewright.modeling.surface_levels.MAX_SURFACE_VERTICES", 1000)
     many_corners = Recorder("corners", "corners")
     many_corners.base("prism", (1, 1, 1), sides=100)
     with pytest.raises(ModelError, match="corners"):

@@ -257,7 +257,7 @@ def test_floating_clusters_are_told_by_component_however_few_pairs_fit_into_memo
 
 
 def test_a_model_too_large_to_be_subdivided_is_a_finding(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("shapewright.modeling.compiled.MAX_SURFACE_VERTICES", 20)
+    monkeypatch.setattr("shapewright.modeling.surface_levels.MAX_SURFACE_VERTICES", 20)
     assert "more than 20 vertices" in found(post().build())["topology"][0]
 
 

@@ -10,6 +10,10 @@ in vec3 normal;
 #endif
 uniform float samples_per_unit;
 layout(location = 0) out vec4 surface;
+#ifdef COLORED
+in vec3 color;
+layout(location = 1) out vec4 surface_color;
+#endif
 
 void main() {
     // Rows of the atlas grow downwards in the picture, hence the sign of y.
@@ -22,4 +26,7 @@ void main() {
     uvec2 direction = uvec2(clamp(n.xy * 127.0 + 128.5, 0.0, 255.0));
     uint level = uint(clamp(height * 1024.0 + 8192.5, 0.0, 16383.0));
     surface = unpackUnorm4x8(direction.x | (direction.y << 8) | (level << 16) | (uint(tint + 0.5) << 30));
+#ifdef COLORED
+    surface_color = vec4(color, 1.0);
+#endif
 }

@@ -6,6 +6,10 @@ in vec3 in_position;                     // an object's vertex, normalised
 in vec3 in_normal;                       // of the corner, any sign
 out vec3 normal;
 #endif
+#ifdef COLORED
+in vec3 in_color;                        // of the vertex: red, green, blue in 0..1
+out vec3 color;
+#endif
 in vec4 in_row_x, in_row_y, in_row_z;    // one image: rows of (scale * rotation | translation)
 in vec2 in_tile_tint;                    // one image: its tile in the atlas; number of the colour
 
@@ -26,6 +30,9 @@ void main() {
     gl_Position = vec4(xy.x, 2.0 * rows / tile_count - 1.0, -0.125 * v.z, 1.0);
     height = v.z;
     tint = in_tile_tint.y;
+#ifdef COLORED
+    color = in_color;
+#endif
 #ifdef SMOOTH
     normal = vec3(dot(in_row_x.xyz, in_normal), dot(in_row_y.xyz, in_normal), dot(in_row_z.xyz, in_normal));
 #endif

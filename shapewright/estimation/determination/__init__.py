@@ -1,0 +1,1 @@
+"""What a query says about the parameters of its fit, and how surely (ours)."""

@@ -1,0 +1,65 @@
+"""The status of each parameter: whether the query determines it."""
+
+from typing import Final
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from shapewright.estimation.determination.information import Information
+from shapewright.estimation.result import ParameterStatus
+
+CHANGE: Final = 0.05
+"""Share of a range whose effect is looked at."""
+LEAST_EFFECT: Final = 5e-4
+"""Root mean square movement of the surface, in half extents, that makes such a change count as determined."""
+WIDEST: Final = 0.15
+"""Half width of an interval, as a share of the range, above which the residual leaves nothing determined."""
+AT_END: Final = 1e-3
+"""A value nearer to an end than this share of the range is at the end."""
+END_PUSH: Final = 5e-3
+"""Share of the range that a value at an end must want to move beyond it."""
+
+
+def judge(
+    information: Information,
+    values: Float[np.ndarray, " A"],
+    lowest: Float[np.ndarray, " A"],
+    highest: Float[np.ndarray, " A"],
+    deviation: float,
+    gradient: Float[np.ndarray, " A"] | None = None,
+) -> tuple[ParameterStatus, ...]:
+    """Return the status of each active continuous parameter.
+
+    A parameter is determined if a change by 5 % of its range moves the surface by more than 5e-4 of the half extent
+    with all else refitted, and if the residual leaves its interval narrow; up to scale, if that is so once the scale is
+    known; and at the end of its range, if it is either of these and the query pulls it beyond.
+
+    Args:
+        information: about the parameters in this order.
+        values: x.
+        lowest: ends of the ranges at these values.
+        highest: the other ends.
+        deviation: what the square root of a variance is multiplied by to give half of an interval.
+        gradient: of half the mean squared residual by x, at the fit; without it no value is at an end.
+    """
+    determined = is_determined(information.effects, deviation)
+    up_to_scale = is_determined(information.with_known_scale().effects, deviation)
+    beyond = np.zeros(len(values), dtype=bool)
+    if gradient is not None:
+        step = -(gradient * information.ranges) / information.effects**2  # shares of the range; all else is at its best
+        near = AT_END * information.ranges
+        beyond = ((values <= lowest + near) & (step < -END_PUSH)) | ((values >= highest - near) & (step > END_PUSH))
+    statuses: list[ParameterStatus] = []
+    for i in range(len(values)):
+        if not up_to_scale[i]:
+            statuses.append("not_determined")
+        elif beyond[i]:
+            statuses.append("at_range_end")
+        else:
+            statuses.append("determined" if determined[i] else "determined_up_to_scale")
+    return tuple(statuses)
+
+
+def is_determined(effects: Float[np.ndarray, " K"], deviation: float) -> Bool[np.ndarray, " K"]:
+    """Tell which effects of a whole range are large enough to determine what has the range."""
+    return np.asarray((CHANGE * effects > LEAST_EFFECT) & (deviation <= WIDEST * effects))
