@@ -61,9 +61,7 @@ class Candidate:
         """Return the candidate with other values, settled, not measured yet."""
         return replace(self, values=self.model.settle(values), misfit=np.inf, zbuffer=np.inf)
 
-    def moved(
-        self, columns: np.ndarray, step: Float[np.ndarray, " N"], center: Float[np.ndarray, " 3"]
-    ) -> "Candidate":
+    def moved(self, columns: np.ndarray, step: Float[np.ndarray, " N"], center: Float[np.ndarray, " 3"]) -> "Candidate":
         """Return the candidate after a step of D parameters and the pose; see :class:`Curvature` for its units."""
         count = len(columns)
         values = self.values.copy()

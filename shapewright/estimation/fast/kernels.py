@@ -7,7 +7,9 @@ kernel stands in, not at those of the kernels that it calls.
 from typing import no_type_check
 
 import numpy as np
+from jaxtyping import Float
 from numba import njit
+from scipy import sparse
 
 
 @njit(cache=True, nogil=True)
@@ -67,9 +69,7 @@ def place_samples(points, triangles, chosen, weights, out):
     for i in range(chosen.shape[0]):
         a, b, c = triangles[chosen[i], 0], triangles[chosen[i], 1], triangles[chosen[i], 2]
         for d in range(3):
-            out[i, d] = (
-                weights[i, 0] * points[a, d] + weights[i, 1] * points[b, d] + weights[i, 2] * points[c, d]
-            )
+            out[i, d] = weights[i, 0] * points[a, d] + weights[i, 1] * points[b, d] + weights[i, 2] * points[c, d]
 
 
 @njit(cache=True, nogil=True, fastmath=True)
@@ -211,6 +211,14 @@ def weighted_rows(starts, columns, weights, dense, out):
                 out[i, c] += weight * dense[row, c]
 
 
+def sparse_product(matrix: sparse.csr_array, controls: Float[np.ndarray, "B V 3"]) -> Float[np.ndarray, "N C"]:
+    """Return samples of every row of control points as columns (x, y, z of the first row, of the second, ...)."""
+    dense = np.ascontiguousarray(controls.transpose(1, 0, 2)).reshape(controls.shape[1], -1)
+    product = np.empty((matrix.shape[0], dense.shape[1]))
+    weighted_rows(matrix.indptr, matrix.indices, matrix.data, dense, product)
+    return product
+
+
 @njit(cache=True, nogil=True)
 @no_type_check
 def _closest_on_triangle(px, py, pz, vertices, triangle, out):
@@ -274,8 +282,20 @@ def _best_pair(x, y, z, normal, others, other_normals, near, spacing, across):
 
 @njit(cache=True, nogil=True)
 @no_type_check
-def match_to_triangles(points, normals, samples, sample_normals, sample_faces, vertices, faces, near, spacing, across,
-                       places, place_normals):
+def match_to_triangles(
+    points,
+    normals,
+    samples,
+    sample_normals,
+    sample_faces,
+    vertices,
+    faces,
+    near,
+    spacing,
+    across,
+    places,
+    place_normals,
+):
     """Match points with the surface of a mesh: the best of the near samples, then the closest point of its triangle.
 
     Args:

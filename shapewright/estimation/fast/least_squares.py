@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy import sparse
 from scipy.spatial import cKDTree
 
 from shapewright.estimation.fast import kernels
@@ -101,7 +100,7 @@ def fit(
             if samples is None:
                 return best or candidate
         matrix, normals = samples
-        moves = _product(matrix, controls)
+        moves = kernels.sparse_product(matrix, controls)
         matches = _match(target, candidate, effort, np.ascontiguousarray(moves[:, :3]), normals)
         candidate = replace(candidate, misfit=matches.misfit, curvature=curvature)
         if effort.outline:
@@ -135,14 +134,6 @@ def _rows_around(
     return rows, differences
 
 
-def _product(matrix: sparse.csr_array, controls: Float[np.ndarray, "B V 3"]) -> Float[np.ndarray, "N C"]:
-    """Samples of every row as columns (x, y, z of the first row, of the second, ...)."""
-    dense = np.ascontiguousarray(controls.transpose(1, 0, 2)).reshape(controls.shape[1], -1)
-    product = np.empty((matrix.shape[0], dense.shape[1]))
-    kernels.weighted_rows(matrix.indptr, matrix.indices, matrix.data, dense, product)
-    return product
-
-
 @dataclass(frozen=True, eq=False)
 class _Matches:
     """Pairs of both directions: the placed samples of the instance and what of the query they belong to."""
@@ -167,12 +158,7 @@ def _match(
     count, near = effort.points, effort.neighbors
     placed = candidate.placed(samples)
     turned = np.ascontiguousarray(normals @ candidate.rotation.T)
-    distances, rows = target.tree.query(placed, k=[*range(1, near + 1)])
-    places, place_normals = np.empty_like(placed), np.empty_like(placed)
-    kernels.match_to_triangles(
-        placed, turned, target.points, target.normals, target.faces, target.vertices, target.triangles,
-        rows, target.spacing(SAMPLES), _ACROSS, places, place_normals,
-    )  # fmt: skip
+    there, places, place_normals = _closest(target, placed, turned, near)
     points, point_normals = target.points[:count], target.normals[:count]
     own_tree = cKDTree(placed, balanced_tree=False, compact_nodes=False)
     own_distances, own_rows = own_tree.query(points, k=[*range(1, min(near, len(placed)) + 1)])
@@ -180,10 +166,32 @@ def _match(
     kernels.match_to_samples(
         points, point_normals, placed, turned, own_rows, target.spacing(count), _ACROSS, chosen, chosen_normals
     )
-    there, back = distances[:, 0], own_distances[:, 0]
+    back = own_distances[:, 0]
     misfit = 0.5 * float(np.minimum(there, _FAR).mean() + np.minimum(back, _FAR).mean())
     median = float(np.median(there) + np.median(back))
-    return _Matches(placed, placed - places, place_normals, chosen, placed[chosen] - points, chosen_normals, misfit, median)
+    return _Matches(
+        placed, placed - places, place_normals, chosen, placed[chosen] - points, chosen_normals, misfit, median
+    )
+
+
+def closest_places(
+    target: Target, placed: Float[np.ndarray, "N 3"], normals: Float[np.ndarray, "N 3"]
+) -> Float[np.ndarray, "N 3"]:
+    """Return the places on the query's triangles that samples of an instance belong to."""
+    return _closest(target, placed, normals, Effort.neighbors)[1]
+
+
+def _closest(
+    target: Target, placed: Float[np.ndarray, "N 3"], normals: Float[np.ndarray, "N 3"], near: int
+) -> tuple[Float[np.ndarray, " N"], Float[np.ndarray, "N 3"], Float[np.ndarray, "N 3"]]:
+    """Return the distance to the nearest sample of the query, the place on its triangles, and the normal there."""
+    distances, rows = target.tree.query(placed, k=[*range(1, near + 1)])
+    places, place_normals = np.empty_like(placed), np.empty_like(placed)
+    kernels.match_to_triangles(
+        placed, normals, target.points, target.normals, target.faces, target.vertices, target.triangles,
+        rows, target.spacing(SAMPLES), _ACROSS, places, place_normals,
+    )  # fmt: skip
+    return distances[:, 0], places, place_normals
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,7 +268,9 @@ def _add_outline(
     )
     if pulls is not None:
         matrix = barycentric_rows(pulls.faces, pulls.weights, model.triangles[COARSE], model.outline)
-        system.add(candidate, target, _product(matrix, controls), differences, pulls.metrics, pulls.forces)
+        system.add(
+            candidate, target, kernels.sparse_product(matrix, controls), differences, pulls.metrics, pulls.forces
+        )
 
 
 def _bounded_step(

@@ -71,7 +71,7 @@ class Search:
         models: what may rebuild it.
         known: of the pose of each model.
         report: told the share that is done and what is being done; may raise to stop.
-        best: the best candidate of each phase so far.
+        best: the best candidate so far of each phase and model (by its number).
         finished: phases that ran to their end.
         kept: candidates that were fitted with care, for alternatives.
     """
@@ -80,7 +80,7 @@ class Search:
     models: Sequence[FittedModel]
     known: Sequence[Known]
     report: Callable[[float, str], None]
-    best: dict[Phase, Candidate] = field(default_factory=dict)
+    best: dict[tuple[Phase, int], Candidate] = field(default_factory=dict)
     finished: set[Phase] = field(default_factory=set)
     kept: list[Candidate] = field(default_factory=list)
 
@@ -132,7 +132,9 @@ class Search:
             tasks,
         )
         candidates = spread(groups, STARTS, STARTS_OF_EACH)
-        self.best["start"] = outline_distance(self.target, candidates[0])
+        for group in groups:
+            if group:
+                self._keep("start", outline_distance(self.target, group[0]))
         self.finished.add("start")
         return candidates
 
@@ -202,17 +204,18 @@ class Search:
     # ------------------------------------------------------------------ what is known so far
 
     def _keep(self, phase: Phase, candidate: Candidate) -> None:
-        best = self.best.get(phase)
+        key = phase, self.models.index(candidate.model)
+        best = self.best.get(key)
         if best is None or candidate.zbuffer < best.zbuffer:
-            self.best[phase] = candidate
+            self.best[key] = candidate
 
     def _say(self, fraction: float, message: str) -> None:
         self._fraction, self._message = fraction, message
         self._ask()
 
     def _ask(self) -> None:
-        fit_so_far = self.best.get("polish") or self.best.get("fit")
-        known = "" if fit_so_far is None else f", z-buffer distance {fit_so_far.zbuffer:.4f}"
+        distance = min((one.zbuffer for one in list(self.best.values())), default=None)
+        known = "" if distance is None else f", z-buffer distance {distance:.4f}"
         self.report(self._fraction, self._message + known)
 
 
