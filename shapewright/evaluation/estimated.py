@@ -15,7 +15,7 @@ from shapewright.estimation.result import Alternative, Layer, Ratio
 from shapewright.evaluation.datasets import Skipped
 from shapewright.evaluation.in_processes import in_processes
 from shapewright.evaluation.synthetic import Truth
-from shapewright.modeling import CompiledModel, ProceduralModel
+from shapewright.modeling import CompiledModel, ProceduralModel, compile_model
 from shapewright.progress import NULL_PROGRESS, Progress
 
 EstimateQuery = Callable[[Query, Sequence[CompiledModel], EstimationSettings], Estimation]
@@ -191,7 +191,7 @@ class _Compiled(dict[str, CompiledModel]):
         self._sources = sources
 
     def __missing__(self, name: str) -> CompiledModel:
-        self[name] = self._sources[name].compile()
+        self[name] = compile_model(self._sources[name])
         return self[name]
 
 
