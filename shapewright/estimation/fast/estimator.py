@@ -22,7 +22,7 @@ from shapewright.estimation.prepared_query import PreparedQuery
 from shapewright.estimation.query import Query
 from shapewright.estimation.record import Record, parameter_estimates
 from shapewright.estimation.residuals import measure_residuals
-from shapewright.estimation.result import Estimation, EstimationCancelled, ModelTried
+from shapewright.estimation.result import Alternative, Distances, Estimation, EstimationCancelled, ModelTried
 from shapewright.estimation.settings import EstimationSettings
 from shapewright.estimation.steady_progress import SteadyProgress
 from shapewright.modeling.compiled import CompiledModel
@@ -168,7 +168,7 @@ class _Work:
         model = self.search.models[number]
         return Candidate(model, estimation.values, pose.rotation, pose.translation, pose.scale)
 
-    def _alternatives(self, number: int, answer: Estimation) -> tuple:
+    def _alternatives(self, number: int, answer: Estimation) -> tuple[Alternative, ...]:
         limit = 1.2 * answer.distances.zbuffer + 0.03
         near = sorted((one for one in self.search.kept if one.zbuffer < limit), key=lambda one: one.zbuffer)[:16]
         best = Contender(
@@ -193,7 +193,7 @@ class _Work:
             model.model.symmetry,
         )
 
-    def _distances(self, candidate: Candidate):
+    def _distances(self, candidate: Candidate) -> Distances:
         comparison = self._comparisons[self.search.models.index(candidate.model)]
         return comparison.distances(comparison.instance(candidate.values), candidate.pose)
 

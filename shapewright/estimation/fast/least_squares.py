@@ -21,7 +21,7 @@ from shapewright.estimation.fast.target import SAMPLES, Target
 _DIFFERENCE = 1e-4
 """Step of the finite differences, in shares of a range."""
 _REACH = 0.3
-"""Longest step: of a measure in shares of its range, of the rotation in radians, of place and logarithm of the scale."""
+"""Longest step: of a measure in shares of its range, of the pose in radians, half extents, logarithm of scale."""
 _FAR = 0.3
 """Distances beyond this count no more in the misfit."""
 _LEAST_WIDTH = 0.01
@@ -166,7 +166,7 @@ def _match(
     kernels.match_to_samples(
         points, point_normals, placed, turned, own_rows, target.spacing(count), _ACROSS, chosen, chosen_normals
     )
-    back = own_distances[:, 0]
+    back = np.asarray(own_distances)[:, 0]
     misfit = 0.5 * float(np.minimum(there, _FAR).mean() + np.minimum(back, _FAR).mean())
     median = float(np.median(there) + np.median(back))
     return _Matches(
@@ -191,7 +191,7 @@ def _closest(
         placed, normals, target.points, target.normals, target.faces, target.vertices, target.triangles,
         rows, target.spacing(SAMPLES), _ACROSS, places, place_normals,
     )  # fmt: skip
-    return distances[:, 0], places, place_normals
+    return np.asarray(distances)[:, 0], places, place_normals
 
 
 @dataclass(frozen=True, eq=False)
@@ -282,7 +282,7 @@ def _bounded_step(
     highest: Float[np.ndarray, " P"],
     free: Bool[np.ndarray, " N"],
 ) -> Float[np.ndarray, " N"]:
-    """Solve for a damped step that stays in the ranges: what would leave its range is held at the end, and solved again."""
+    """Solve for a damped step that stays in the ranges: what would leave its range is held at its end."""
     count = len(columns)
     widths = candidate.model.widths[columns]
     matrix, gradient = system.curvature.copy(), system.gradient.copy()

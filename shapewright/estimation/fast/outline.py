@@ -1,7 +1,7 @@
 """The outlines of the query in the seven depth views, and how they pull an instance (ours).
 
-Closest points say nothing about where a flat fin ends, or which way a thin rod should slide; the outlines do, and most of the
-z-buffer distance is there. Both objects' outlines are matched within each view, both ways, if they face the same way.
+Closest points say nothing about where a flat fin ends, or which way a thin rod should slide; the outlines do, and most
+of the z-buffer distance is there. Outlines of both objects that face the same way are matched within each view.
 """
 
 from dataclasses import dataclass
