@@ -157,8 +157,10 @@ class AnnotatingRecorder(Recorder):
     under the same label belong together.
     """
 
-    def __init__(self, name: str, class_name: str, *, description: str = "", closed: bool = True) -> None:
-        super().__init__(name, class_name, description=description, closed=closed)
+    def __init__(
+        self, name: str, class_name: str, *, description: str = "", closed: bool = True, unit_m: float | None = None
+    ) -> None:
+        super().__init__(name, class_name, description=description, closed=closed, unit_m=unit_m)
         self._heading: Mapping[str, tuple[str, bool]] = {}
         self._judgements: list[Judgement] = []
 

@@ -23,6 +23,12 @@ CLASSES = (
 MAX_CONTROL_VERTICES = 1_600
 """What is subdivided twice has 16 times as many; batches and single instances must stay fast."""
 
+SIZES_M = {
+    "airplane": (5, 80), "glass_with_stem": (0.1, 0.4), "helicopter": (5, 40), "ship": (10, 400), "spaceship": (5, 400),
+    "spider": (0.005, 0.3), "tower": (10, 400),
+}  # fmt: skip
+"""How large base models of a class are in the world; furniture, animals and weapons are of the size of people."""
+
 every_model = pytest.mark.parametrize("name", NAMES)
 
 
@@ -70,6 +76,17 @@ def test_the_document_is_what_its_script_models(name: str) -> None:
     script = importlib.import_module(f"models_store.library.{name}.build")
     text = Path(models_store.library.__file__).parent.joinpath(name, "model.json").read_text(encoding="utf-8")
     assert script.build().to_json() == text, f"run: python -m models_store.library.{name}.build"
+
+
+@every_model
+def test_a_model_says_what_its_lengths_are(name: str) -> None:
+    model = model_of(name)
+    assert model.unit_m is not None
+    assert any(parameter.kind == "length" for parameter in model.parameters)
+    compiled = compiled_model(name)
+    size_m = np.ptp(compiled.instance(compiled.base_values()).vertices, axis=0).max() * model.unit_m
+    low, high = SIZES_M.get(model.class_name, (0.1, 3.0))
+    assert low < size_m < high
 
 
 @every_model

@@ -66,6 +66,9 @@ def test_the_schema_accepts_any_model(recipe: Recipe) -> None:
         (("operations",), [], "operations", "must be a base"),
         (("operations",), {"a": 1}, "operations", "a list"),
         (("closed",), "yes", "closed", "true or false"),
+        (("unit_m",), 0.0, "unit_m", "positive number of meters"),
+        (("unit_m",), "m", "unit_m", "not a finite number"),
+        (("parameters", 0, "kind"), "weight", "parameters[0].kind", "none of length"),
     ],
 )
 def test_a_wrong_document_is_refused_with_the_place(
@@ -112,6 +115,27 @@ def test_old_documents_climb_one_version_at_a_time() -> None:
     upgraded = upgrade_document(old, upgrades=steps, version=3)
     assert upgraded == {"format": FORMAT, "version": 3, "size": [2, 2, 2], "name": "box"}
     assert old["version"] == 1
+
+
+def test_older_documents_get_the_kinds_that_their_units_tell() -> None:
+    document = stool()
+    old = {**{key: value for key, value in document.items() if key != "unit_m"}, "version": 2}
+    height = {**document["parameters"][0], "name": "height", "unit": "cm"}
+    tilt = {**height, "name": "tilt", "unit": "deg"}
+    plain = {**height, "name": "plain", "unit": None}
+    for parameter in (height, tilt, plain):
+        parameter.pop("kind", None)
+    model = ProceduralModel.from_document({**old, "parameters": [height, tilt, plain]})
+    assert [parameter.kind for parameter in model.parameters] == ["length", "angle", None]
+    assert model.unit_m is None
+    assert json.loads(model.to_json())["version"] == 3
+
+
+def test_a_kind_that_the_unit_contradicts_is_refused() -> None:
+    document = stool()
+    document["parameters"][0] |= {"unit": "deg", "kind": "length"}
+    with pytest.raises(ModelError, match="therefore not of kind 'length'"):
+        ProceduralModel.from_document(document)
 
 
 def test_a_file_that_is_not_there(tmp_path: Any) -> None:

@@ -37,28 +37,28 @@ def hull(recorder: Recorder, shape: Hull) -> Loft:
     """Model a hull with parameters for cabin, nose and tail boom."""
     made = beam(recorder, "+x", shape.sections, crease="all") if shape.sharp else loft(recorder, "x", shape.sections)
     cabin, last = shape.tail + 1, len(shape.sections) - 1
-    recorder.parameter("cabin_length", "Cabin length", *shape.cabin_length)
+    recorder.parameter("cabin_length", "Cabin length", *shape.cabin_length, kind="length")
     recorder.scale(made.beyond(cabin, hinge=cabin), 1.0, "u", size="cabin_length")
     for name, label, limits, axis in (
         ("cabin_width", "Cabin width", shape.cabin_width, "v"),
         ("cabin_height", "Cabin height", shape.cabin_height, "z"),
     ):
-        recorder.parameter(name, label, *limits)
+        recorder.parameter(name, label, *limits, kind="length")
         recorder.scale(made.sections(*range(cabin, last + 1)), 1.0, axis, size=name)
-    recorder.parameter("nose_length", "Nose length", 0.5, 1.8)
+    recorder.parameter("nose_length", "Nose length", 0.5, 1.8, kind="length")
     recorder.scale(made.beyond(shape.nose, hinge=shape.nose), 1.0, "u", size="nose_length")
     recorder.parameter("nose_point", "Pointed or blunt nose", 0.4, 1.8)
     recorder.scale(made.sections(last), 1.0, "vz", size="nose_point")
-    recorder.parameter("nose_drop", "Nose lower than the cabin", -1.0, 2.0, base_value=shape.drop)
+    recorder.parameter("nose_drop", "Nose lower than the cabin", -1.0, 2.0, base_value=shape.drop, unit="m")
     for number in range(shape.nose, last + 1):
         share = (number - shape.nose + 1) / (last - shape.nose + 1)
         move(recorder, made.sections(number), (0.0, 0.0, -shape.drop * share), length="nose_drop")
-    recorder.parameter("tail_length", "Tail boom length", *shape.tail_length)
+    recorder.parameter("tail_length", "Tail boom length", *shape.tail_length, kind="length")
     boom = [Target(tuple(v for ring in made.rings[:cabin] for v in ring[0]), "world", (), made.rings[cabin][0])]
     recorder.scale(boom, 1.0, "u", size="tail_length")
-    recorder.parameter("tail_thickness", "Tail boom thickness", 0.5, 1.6)
+    recorder.parameter("tail_thickness", "Tail boom thickness", 0.5, 1.6, kind="length")
     recorder.scale(made.sections(*range(cabin)), 1.0, "vz", size="tail_thickness")
-    recorder.parameter("tail_rise", "Tip of the tail boom raised", -0.8, 2.0, base_value=shape.rise)
+    recorder.parameter("tail_rise", "Tip of the tail boom raised", -0.8, 2.0, base_value=shape.rise, unit="m")
     for number in range(shape.tail):
         move(recorder, made.sections(number), (0.0, 0.0, shape.rise * (1 - number / shape.tail)), length="tail_rise")
     return made
@@ -68,7 +68,7 @@ def engine(recorder: Recorder, sections: Sequence[Section], anchor: Target) -> L
     """Model a hump on the back of the cabin; it stands half in the hull."""
     made = loft(recorder, "x", sections, anchors=[anchor])
     for what, axis, low, high in (("length", "u", 0.6, 1.6), ("width", "v", 0.5, 1.6), ("height", "z", 0.4, 2.0)):
-        recorder.parameter(f"engine_{what}", f"Engine {what}", low, high)
+        recorder.parameter(f"engine_{what}", f"Engine {what}", low, high, kind="length")
         recorder.scale(made.body(), 1.0, axis, size=f"engine_{what}")
     return made
 
@@ -88,9 +88,13 @@ class Pods:
 def pods(recorder: Recorder, shape: Pods, anchors: tuple[Target, Target], active_when: tuple[Condition, ...]) -> Loft:
     """Model a pair of pods and their length and thickness."""
     made = loft(recorder, "x", shape.sections, sides=6, offset=shape.offset, anchors=anchors)
-    recorder.parameter(f"{shape.name}_length", f"{shape.label} length", *shape.length_range, active_when=active_when)
+    recorder.parameter(
+        f"{shape.name}_length", f"{shape.label} length", *shape.length_range, active_when=active_when, kind="length"
+    )
     recorder.scale(made.body(), 1.0, "u", size=f"{shape.name}_length")
-    recorder.parameter(f"{shape.name}_size", f"{shape.label} thickness", *shape.size_range, active_when=active_when)
+    recorder.parameter(
+        f"{shape.name}_size", f"{shape.label} thickness", *shape.size_range, active_when=active_when, kind="length"
+    )
     recorder.scale(made.body(), 1.0, "vz", size=f"{shape.name}_size")
     return made
 
@@ -126,11 +130,11 @@ def fin(recorder: Recorder, shape: Fin, body: Loft) -> Loft:
         for place, wide, thick in ((0.0, 1.0, 1.3), (0.5, 0.85, 1.0), (1.0, 0.65, 0.8))
     ]
     made = beam(recorder, "+z", sections, crease="all", offset=offset, anchors=root)
-    recorder.parameter("fin_height", "Fin height", *shape.height_range, base_value=shape.height)
+    recorder.parameter("fin_height", "Fin height", *shape.height_range, base_value=shape.height, unit="m")
     recorder.scale(made.body(hinge=0), 1.0, "z", size="fin_height")
-    recorder.parameter("fin_chord", "Fin chord", 0.5, 1.7, base_value=shape.chord)
+    recorder.parameter("fin_chord", "Fin chord", 0.5, 1.7, base_value=shape.chord, unit="m")
     recorder.scale(made.body(hinge=0), 1.0, "u", size="fin_chord")
-    recorder.parameter("fin_sweep", "Fin sweep", -0.5, 2.2, base_value=shape.sweep)
+    recorder.parameter("fin_sweep", "Fin sweep", -0.5, 2.2, base_value=shape.sweep, unit="m")
     for number in (1, 2):
         move(recorder, made.sections(number), (-shape.sweep * number / 2, 0.0, 0.0), length="fin_sweep")
     recorder.switch("lower_fin", "Fin below the tail boom")
@@ -156,8 +160,12 @@ def tailplane(recorder: Recorder, shape: Tailplane, boom: Target, fin_top: Targe
     options = ("on the boom", "on the fin", "none")
     recorder.choice("tailplane", "Tailplane", options)
     there = (when("tailplane", 1, 2),)
-    recorder.parameter("tailplane_span", "Tailplane half span", 0.4, 1.7, base_value=shape.span, active_when=there)
-    recorder.parameter("tailplane_chord", "Tailplane chord", 0.5, 1.8, base_value=shape.chord, active_when=there)
+    recorder.parameter(
+        "tailplane_span", "Tailplane half span", 0.4, 1.7, base_value=shape.span, active_when=there, unit="m"
+    )
+    recorder.parameter(
+        "tailplane_chord", "Tailplane chord", 0.5, 1.8, base_value=shape.chord, active_when=there, unit="m"
+    )
     sections = [
         Section(0.0, shape.chord, PLATE_THICKNESS * 1.2),
         Section(shape.span, shape.chord * 0.8, PLATE_THICKNESS),

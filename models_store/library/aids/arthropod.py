@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from models_store.library.aids.beam import at
 from models_store.library.aids.loft import ORIGIN, Loft, Section, Vector, loft, move
 from shapewright.modeling import Component, Condition, Element, Mirror, Recorder, Target, when
+from shapewright.modeling.units import ParameterKind
 
 LEG_SIDES = 4
 KNEE, ANKLE = 2, 4
@@ -109,18 +110,24 @@ def legs(recorder: Recorder, shape: LegShape, stations: Sequence[Station]) -> li
 
 
 def _declare(recorder: Recorder, shape: LegShape) -> None:
-    for name, label, limits, base_value in (
-        ("leg_length", "leg length", shape.length_range, shape.length),
-        ("leg_thickness", "leg thickness", shape.thickness_range, shape.thickness),
-        ("leg_bulge", "leg thickness between the joints", (0.5, 2.0), None),
-        ("leg_raise", "rise of the thighs (deg)", shape.raise_range, shape.raise_deg),
-        ("knee_bend", "bend of the knees (deg)", shape.knee_range, shape.knee_deg),
-        ("ankle_bend", "bend of the ankles (deg)", shape.ankle_range, shape.ankle_deg),
-        ("leg_spread", "spread of the legs forwards and backwards", shape.spread_range, None),
-        ("leg_sweep", "legs turned backwards (deg)", (0.0, 2.0), 20.0),
-    ):
+    kinds: tuple[tuple[str, str, Range, float | None, ParameterKind | None], ...] = (
+        ("leg_length", "leg length", shape.length_range, shape.length, "length"),
+        ("leg_thickness", "leg thickness", shape.thickness_range, shape.thickness, "length"),
+        ("leg_bulge", "leg thickness between the joints", (0.5, 2.0), None, None),
+        ("leg_raise", "rise of the thighs (deg)", shape.raise_range, shape.raise_deg, "angle"),
+        ("knee_bend", "bend of the knees (deg)", shape.knee_range, shape.knee_deg, "angle"),
+        ("ankle_bend", "bend of the ankles (deg)", shape.ankle_range, shape.ankle_deg, "angle"),
+        ("leg_spread", "spread of the legs forwards and backwards", shape.spread_range, None, None),
+        ("leg_sweep", "legs turned backwards (deg)", (0.0, 2.0), 20.0, "angle"),
+    )
+    for name, label, limits, base_value, kind in kinds:
         recorder.parameter(
-            f"{shape.prefix}{name}", f"{shape.label}{label}".capitalize(), *limits, base_value=base_value
+            f"{shape.prefix}{name}",
+            f"{shape.label}{label}".capitalize(),
+            *limits,
+            unit="cm" if kind == "length" else None,
+            base_value=base_value,
+            kind=kind,
         )
     _keep_feet_low(recorder, shape)
 
@@ -182,6 +189,7 @@ def feelers(
         *shape.length_range,
         base_value=shape.length,
         active_when=active_when,
+        unit="cm",
     )
     recorder.parameter(f"{shape.name}_spread", f"{shape.label} spread", *shape.spread_range, active_when=active_when)
     sections = [
@@ -198,7 +206,13 @@ def feelers(
     if shape.raise_deg:
         name = f"{shape.name}_raise"
         recorder.parameter(
-            name, f"{shape.label} rise (deg)", -1.0, 2.0, base_value=shape.raise_deg, active_when=active_when
+            name,
+            f"{shape.label} rise (deg)",
+            -1.0,
+            2.0,
+            base_value=shape.raise_deg,
+            active_when=active_when,
+            kind="angle",
         )
         recorder.rotate(made.body(hinge=0), -shape.raise_deg, "v", angle=name)
     recorder.rotate(made.body(hinge=0), shape.heading_deg, "z", angle=f"{shape.name}_spread")
@@ -228,19 +242,19 @@ def resize(recorder: Recorder, body: Loft, prefix: str, label: str, ranges: Sequ
     """Let the length (x), width (y) and height (z) of a body be parameters, about one of its sections."""
     names = (("length", "u"), ("width", "v"), ("height", "z"))
     for (what, axis), limits in zip(names, ranges, strict=True):
-        recorder.parameter(f"{prefix}_{what}", f"{label} {what}", *limits)
+        recorder.parameter(f"{prefix}_{what}", f"{label} {what}", *limits, kind="length")
         recorder.scale(body.body(hinge=hinge), 1.0, axis, size=f"{prefix}_{what}")
 
 
 def tilt(recorder: Recorder, body: Loft, name: str, label: str, angle_deg: float, *, hinge: int, up: float) -> None:
     """Let a body turn about the y axis: ``angle_deg`` down to ``up`` times as far upwards of what lies behind."""
-    recorder.parameter(name, label, 0.0, 1.0 + up, base_value=angle_deg)
+    recorder.parameter(name, label, 0.0, 1.0 + up, base_value=angle_deg, kind="angle")
     recorder.rotate(body.body(hinge=hinge), -angle_deg, "v")
     recorder.rotate(body.body(hinge=hinge), angle_deg, "v", angle=name)
 
 
 def lift(recorder: Recorder, body: Loft, name: str, label: str, by: float) -> None:
     """Let a body move up and down by at most a distance."""
-    recorder.parameter(name, label, 0.0, 2.0, base_value=by)
+    recorder.parameter(name, label, 0.0, 2.0, base_value=by, unit="cm")
     move(recorder, body.body(), (0.0, 0.0, -by))
     move(recorder, body.body(), (0.0, 0.0, by), length=name)

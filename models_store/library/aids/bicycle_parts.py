@@ -150,7 +150,7 @@ def declare_cranks(recorder: Recorder) -> None:
     recorder.choice("cranks", "Cranks", ("with", "without"))
     there = (when("cranks", 1),)
     recorder.parameter("crank_length", "Crank length", 0.6, 1.25, unit="m", base_value=0.17, active_when=there)
-    recorder.parameter("crank_angle", "Crank angle (deg)", 0.0, 4.4, base_value=40.0, active_when=there)
+    recorder.parameter("crank_angle", "Crank angle (deg)", 0.0, 4.4, base_value=40.0, active_when=there, kind="angle")
     recorder.parameter("chainring", "Chainring diameter", 0.6, 1.5, unit="m", base_value=0.18, active_when=there)
 
 
@@ -183,7 +183,7 @@ def declare_saddle(recorder: Recorder) -> None:
     recorder.parameter("saddle_length", "Saddle length", 0.7, 1.4, unit="m", base_value=0.27)
     recorder.parameter("saddle_width", "Saddle width", 0.5, 1.7, unit="m", base_value=0.15)
     recorder.parameter("saddle_depth", "Saddle thickness", 0.4, 2.0, unit="m", base_value=0.04)
-    recorder.parameter("saddle_tilt", "Saddle tilt (deg)", -2.0, 3.0, base_value=3.0)
+    recorder.parameter("saddle_tilt", "Saddle tilt (deg)", -2.0, 3.0, base_value=3.0, kind="angle")
 
 
 def saddle(recorder: Recorder, post: Loft) -> Loft:
@@ -248,10 +248,19 @@ def declare_handlebars(recorder: Recorder) -> None:
     """Declare what :func:`handlebars` varies."""
     recorder.choice("handlebars", "Handlebars", HANDLEBARS)
     recorder.parameter("bar_width", "Handlebar width", 0.6, 1.5, base_value=0.6, unit="m")
-    recorder.parameter("bar_rise", "Handlebar rise", -0.3, 2.0, active_when=(when("handlebars", FLAT, CITY),))
-    recorder.parameter("bar_sweep", "Handlebar sweep", -0.3, 2.5, active_when=(when("handlebars", FLAT),))
     recorder.parameter(
-        "bar_sweep_back", "Sweep of the swept handlebars", 0.4, 1.3, active_when=(when("handlebars", CITY),)
+        "bar_rise", "Handlebar rise", -0.3, 2.0, active_when=(when("handlebars", FLAT, CITY),), kind="length"
+    )
+    recorder.parameter(
+        "bar_sweep", "Handlebar sweep", -0.3, 2.5, active_when=(when("handlebars", FLAT),), kind="length"
+    )
+    recorder.parameter(
+        "bar_sweep_back",
+        "Sweep of the swept handlebars",
+        0.4,
+        1.3,
+        active_when=(when("handlebars", CITY),),
+        kind="length",
     )
     recorder.parameter("bar_curl", "Curl of the drop handlebars", 0.7, 1.1, active_when=(when("handlebars", DROP),))
 

@@ -60,6 +60,7 @@ class Rotor:
             *self.diameter_range,
             base_value=self.diameter,
             active_when=self.there,
+            unit="m",
         )
 
 
@@ -96,7 +97,7 @@ def main_rotor(recorder: Recorder, rotor: Rotor, mast: Mast, *anchors: Target) -
     """Model a rotor on a mast on each anchor, all alike; return what turns, which need not be symmetric."""
     rotor.declare(recorder)
     name = f"{rotor.prefix}_mast"
-    recorder.parameter(name, f"{rotor.label} mast height", *mast.height_range, base_value=mast.height)
+    recorder.parameter(name, f"{rotor.label} mast height", *mast.height_range, base_value=mast.height, unit="m")
     profile = ((-mast.sunk, 1.6), (0.0, 1.6), (0.55 * mast.height, 0.9), (0.9 * mast.height, 2.4), (mast.height, 1.8))
     sections = [Section(place, wide * mast.width, wide * mast.width) for place, wide in profile]
     columns = [loft(recorder, "z", sections, sides=ROUND_SIDES, anchors=[anchor]) for anchor in anchors]
@@ -104,7 +105,7 @@ def main_rotor(recorder: Recorder, rotor: Rotor, mast: Mast, *anchors: Target) -
     turning = [_blades(recorder, rotor, column.rings[-1][0], flat=True) for column in columns]
     name = f"{rotor.prefix}_blade_width"
     recorder.parameter(
-        name, f"{rotor.label} blade width", 0.4, 1.8, base_value=rotor.blade_width, active_when=rotor.bladed
+        name, f"{rotor.label} blade width", 0.4, 1.8, base_value=rotor.blade_width, active_when=rotor.bladed, unit="m"
     )
     for each in turning:
         recorder.scale(each.blades.body(hinge=0), 1.0, "u", size=f"{rotor.prefix}_diameter")
@@ -142,7 +143,7 @@ def tail_rotor(recorder: Recorder, rotor: Rotor, anchor: Target, *, aside: float
     components = [axle.component.whole, *turning.components]
     if moves:
         name = f"{rotor.prefix}_height"
-        recorder.parameter(name, f"{rotor.label} place", 0.0, 2.0, base_value=moves, active_when=rotor.there)
+        recorder.parameter(name, f"{rotor.label} place", 0.0, 2.0, base_value=moves, active_when=rotor.there, unit="m")
         recorder.drag(Target(tuple(components), "world"), -moves)
         recorder.drag(Target(tuple(components), "world"), moves, height=name)
     recorder.part(f"{rotor.label}: axle", [axle.component], present_when=rotor.there)
@@ -153,16 +154,22 @@ def tail_rotor(recorder: Recorder, rotor: Rotor, anchor: Target, *, aside: float
 def _pose(recorder: Recorder, rotor: Rotor, turning: Sequence[Blades]) -> None:
     """Blades droop more towards their tips; a rotor turns about its mast and tilts at its top."""
     name = f"{rotor.prefix}_droop"
-    recorder.parameter(name, f"{rotor.label} blade droop (deg)", -1.0, 2.5, base_value=3.0, active_when=rotor.bladed)
+    recorder.parameter(
+        name, f"{rotor.label} blade droop (deg)", -1.0, 2.5, base_value=3.0, active_when=rotor.bladed, kind="angle"
+    )
     for each in turning:
         for joint in (0, 1):
             recorder.rotate(each.blades.beyond(joint + 1, hinge=joint), 1.5, "v", angle=name)
     everything = [target for each in turning for target in each.each()]
     name = f"{rotor.prefix}_turn"
-    recorder.parameter(name, f"{rotor.label} turned (deg)", -2.0, 2.0, base_value=45.0, active_when=rotor.bladed)
+    recorder.parameter(
+        name, f"{rotor.label} turned (deg)", -2.0, 2.0, base_value=45.0, active_when=rotor.bladed, kind="angle"
+    )
     recorder.rotate(everything, 45.0, "z", angle=name)
     name = f"{rotor.prefix}_tilt"
-    recorder.parameter(name, f"{rotor.label} tilted forwards (deg)", -2.0, 2.5, base_value=3.0, active_when=rotor.there)
+    recorder.parameter(
+        name, f"{rotor.label} tilted forwards (deg)", -2.0, 2.5, base_value=3.0, active_when=rotor.there, kind="angle"
+    )
     recorder.rotate(everything, 3.0, "v", angle=name)
 
 

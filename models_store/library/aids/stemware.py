@@ -11,8 +11,15 @@ from models_store.library.aids.lathe import Lathe, Ring, control_diameter, widen
 from shapewright.modeling import Component, Recorder, Target, group
 
 SIDES = 12
+UNIT_M = 0.2
+"""Meters in a unit of the coordinates: a glass with a foot of half a unit is 18 cm high, and its bowl 10 cm wide."""
 WALL = 0.955
 """Width of an inner wall, relative to the outer one."""
+
+
+def centimeters(length: float) -> float:
+    """Return a length of the model in centimeters."""
+    return round(100.0 * UNIT_M * length, 6)
 
 
 @dataclass(frozen=True)

@@ -60,9 +60,16 @@ def undercarriage(
     """
     recorder.choice("gear", "Undercarriage", gear.options)
     recorder.parameter(
-        "gear_height", "Undercarriage height", *gear.height_range, base_value=gear.height, active_when=gear.there
+        "gear_height",
+        "Undercarriage height",
+        *gear.height_range,
+        base_value=gear.height,
+        active_when=gear.there,
+        unit="m",
     )
-    recorder.parameter("gear_track", "Undercarriage spread", 0.0, 2.2, base_value=gear.track, active_when=gear.there)
+    recorder.parameter(
+        "gear_track", "Undercarriage spread", 0.0, 2.2, base_value=gear.track, active_when=gear.there, unit="m"
+    )
     pairs = {place: corners(recorder, body, place) for place in (front, rear)}
     if "skids" in gear.options:
         _skids(recorder, gear, pairs[front], pairs[rear], lengthens)
@@ -70,7 +77,7 @@ def undercarriage(
     if wheels:
         wheeled = gear.present(*wheels)
         recorder.parameter(
-            "wheel_diameter", "Wheel diameter", 0.5, 1.9, base_value=gear.wheel_diameter, active_when=wheeled
+            "wheel_diameter", "Wheel diameter", 0.5, 1.9, base_value=gear.wheel_diameter, active_when=wheeled, unit="m"
         )
     for option, pair, single in (("nose wheel", rear, nose), ("tail wheel", front, tail)):
         if option in gear.options:
@@ -97,8 +104,12 @@ def _skids(
     lengthens: Sequence[str],
 ) -> None:
     there = gear.present("skids")
-    recorder.parameter("skid_length", "Skid length", 0.75, 1.4, base_value=gear.skid_length, active_when=there)
-    recorder.parameter("skid_thickness", "Skid thickness", 0.5, 3.0, base_value=gear.skid_thickness, active_when=there)
+    recorder.parameter(
+        "skid_length", "Skid length", 0.75, 1.4, base_value=gear.skid_length, active_when=there, unit="m"
+    )
+    recorder.parameter(
+        "skid_thickness", "Skid thickness", 0.5, 3.0, base_value=gear.skid_thickness, active_when=there, unit="m"
+    )
     struts = [_strut(recorder, gear, anchors, gear.skid_thickness * 0.9) for anchors in (front, rear)]
     feet = [
         Target(struts[0].rings[2][copy] + struts[1].rings[2][copy], "world", struts[0].images[copy]) for copy in (0, 1)

@@ -24,7 +24,9 @@ ENGINE, ENGINE_LENGTH = 0.5, 1.1
 
 def model() -> AnnotatingRecorder:
     """Model the airplane."""
-    r = AnnotatingRecorder("airplane", "airplane", description="An airplane: airliner, propeller plane, biplane, jet.")
+    r = AnnotatingRecorder(
+        "airplane", "airplane", unit_m=1.0, description="An airplane: airliner, propeller plane, biplane, jet."
+    )
     r.parameter("fuselage_diameter", "Fuselage diameter", 0.5, 1.5, unit="m", base_value=DIAMETER)
     r.parameter("fuselage_flatness", "Fuselage height (of its width)", 0.7, 1.4, base_value=1.0)
     r.parameter("front_length", "Fuselage length before the wings", 0.5, 1.8, unit="m", base_value=FRONT)

@@ -21,7 +21,7 @@ EAR, HORN = 0.17, 0.22
 def model() -> AnnotatingRecorder:
     """Model the animal."""
     r = AnnotatingRecorder(
-        "animal", "animal", description="A standing four-legged animal: dog, horse, pig, cow, giraffe."
+        "animal", "animal", unit_m=1.0, description="A standing four-legged animal: dog, horse, pig, cow, giraffe."
     )
     r.parameter("trunk_length", "Trunk length", 0.6, 1.9, unit="m", base_value=TRUNK)
     r.parameter("trunk_width", "Trunk width", 0.6, 1.6, unit="m", base_value=WIDTH)

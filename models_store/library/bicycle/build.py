@@ -9,7 +9,7 @@ from shapewright.modeling import ProceduralModel, Recorder
 
 def build() -> ProceduralModel:
     """Model the bicycle."""
-    recorder = Recorder("bicycle", "bicycle", description="A bicycle with a diamond frame.")
+    recorder = Recorder("bicycle", "bicycle", unit_m=1.0, description="A bicycle with a diamond frame.")
     declare(recorder)
     recorder.parameter("frame_height", "Height of the top tube", 0.35, 1.9, unit="m", base_value=0.13)
     recorder.parameter("top_tube_slope", "Slope of the top tube", 0.0, 2.8)

@@ -12,7 +12,7 @@ PIVOT, KNEE = (0.44, 0.10), (0.52, 0.24)
 
 def build() -> ProceduralModel:
     """Model the bicycle."""
-    recorder = Recorder("bicycle_mountain", "bicycle", description="A mountain bicycle with a beam frame.")
+    recorder = Recorder("bicycle_mountain", "bicycle", unit_m=1.0, description="A mountain bicycle with a beam frame.")
     declare(recorder)
     recorder.choice("frame", "Frame", ("beam and mast", "beam, mast and upper tube"))
     recorder.choice("shock", "Shock absorber", ("with", "without"))

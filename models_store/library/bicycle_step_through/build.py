@@ -14,7 +14,7 @@ WAIST = (0.375, 0.165)
 
 def build() -> ProceduralModel:
     """Model the bicycle."""
-    recorder = Recorder("bicycle_step_through", "bicycle", description="A city bicycle without a top tube.")
+    recorder = Recorder("bicycle_step_through", "bicycle", unit_m=1.0, description="A city bicycle without a top tube.")
     declare(recorder, ("with", "without"))
     recorder.choice("low_tubes", "Low tubes", ("two", "one"))
     recorder.choice("basket", "Basket", ("without", "with"))

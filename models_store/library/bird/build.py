@@ -68,7 +68,9 @@ LEG = Leg(length=0.13, thigh=0.030, shank=0.011, knee=0.4, toe=0.05, inside=(0.0
 
 def build() -> ProceduralModel:
     """Model the flying bird."""
-    recorder = Recorder("bird", "bird", description="A flying bird with its wings spread; with or without legs.")
+    recorder = Recorder(
+        "bird", "bird", unit_m=1.0, description="A flying bird with its wings spread; with or without legs."
+    )
     recorder.symmetry(mirrors=("y",))
     _declare(recorder)
     bird = model_body(recorder, TRUNK, NECK, HEAD)

@@ -68,7 +68,7 @@ LEG = Leg(length=0.16, thigh=0.045, shank=0.014, knee=0.4, toe=0.065, inside=(0.
 
 def build() -> ProceduralModel:
     """Model the flapping bird."""
-    recorder = Recorder("bird_flapping", "bird", description="A flying bird that beats its broad wings.")
+    recorder = Recorder("bird_flapping", "bird", unit_m=1.0, description="A flying bird that beats its broad wings.")
     recorder.symmetry(mirrors=("y",))
     _declare(recorder)
     bird = model_body(recorder, TRUNK, NECK, HEAD)

@@ -53,7 +53,9 @@ LEG = Leg(length=0.17, thigh=0.060, shank=0.030, knee=0.4, toe=0.10, inside=(0.0
 
 def build() -> ProceduralModel:
     """Model the upright bird."""
-    recorder = Recorder("bird_penguin", "bird", description="A bird upright on short legs: penguin, owl, puffin.")
+    recorder = Recorder(
+        "bird_penguin", "bird", unit_m=1.0, description="A bird upright on short legs: penguin, owl, puffin."
+    )
     recorder.symmetry(mirrors=("y",))
     _declare(recorder)
     bird = model_body(recorder, TRUNK, NECK, HEAD)

@@ -57,7 +57,10 @@ CREST = 0.045
 def build() -> ProceduralModel:
     """Model the perched bird."""
     recorder = Recorder(
-        "bird_standing", "bird", description="A bird that stands with folded wings: songbird, pigeon, eagle, pheasant."
+        "bird_standing",
+        "bird",
+        unit_m=1.0,
+        description="A bird that stands with folded wings: songbird, pigeon, eagle, pheasant.",
     )
     recorder.symmetry(mirrors=("y",))
     _declare(recorder)

@@ -56,7 +56,7 @@ LEG = Leg(length=0.16, thigh=0.050, shank=0.018, knee=0.35, toe=0.075, inside=(0
 def build() -> ProceduralModel:
     """Model the water bird."""
     recorder = Recorder(
-        "bird_swimming", "bird", description="A duck, goose or swan; swimming, or standing on short legs."
+        "bird_swimming", "bird", unit_m=1.0, description="A duck, goose or swan; swimming, or standing on short legs."
     )
     recorder.symmetry(mirrors=("y",))
     _declare(recorder)

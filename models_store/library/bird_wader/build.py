@@ -57,7 +57,7 @@ LEG = Leg(length=0.52, thigh=0.055, shank=0.018, knee=0.42, toe=0.10, inside=(0.
 
 def build() -> ProceduralModel:
     """Model the long-legged bird."""
-    recorder = Recorder("bird_wader", "bird", description="A standing bird with a long neck and long legs.")
+    recorder = Recorder("bird_wader", "bird", unit_m=1.0, description="A standing bird with a long neck and long legs.")
     recorder.symmetry(mirrors=("y",))
     _declare(recorder)
     bird = model_body(recorder, TRUNK, NECK, HEAD)

@@ -20,7 +20,9 @@ SIGNS = ((1, 1), (1, -1), (-1, 1), (-1, -1))
 
 def model() -> AnnotatingRecorder:
     """Model the chair."""
-    r = AnnotatingRecorder("chair", "chair", description="A chair with four legs, a back and perhaps armrests.")
+    r = AnnotatingRecorder(
+        "chair", "chair", unit_m=1.0, description="A chair with four legs, a back and perhaps armrests."
+    )
     r.parameter("seat_width", "Seat width", 0.7, 1.6, unit="m", base_value=WIDTH)
     r.parameter("seat_depth", "Seat depth", 0.7, 1.4, unit="m", base_value=DEPTH)
     r.parameter("seat_thickness", "Seat thickness", 0.35, 3.0, unit="m", base_value=THICKNESS)

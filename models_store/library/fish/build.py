@@ -44,7 +44,9 @@ EYE = 0.016
 
 def build() -> ProceduralModel:
     """Model the fish."""
-    recorder = Recorder("fish", "fish", description="A fish like a spindle, with the fins of a perch, trout or tuna.")
+    recorder = Recorder(
+        "fish", "fish", unit_m=1.0, description="A fish like a spindle, with the fins of a perch, trout or tuna."
+    )
     recorder.symmetry(mirrors=("y",))
     _declare(recorder)
     fish = model_body(recorder, LENGTH, HEIGHT, WIDTH, FIN_THICKNESS)

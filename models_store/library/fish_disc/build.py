@@ -55,7 +55,9 @@ EYE = 0.016
 
 def build() -> ProceduralModel:
     """Model the deep fish."""
-    recorder = Recorder("fish_disc", "fish", description="A deep, flat fish with tall fins, like an angelfish.")
+    recorder = Recorder(
+        "fish_disc", "fish", unit_m=1.0, description="A deep, flat fish with tall fins, like an angelfish."
+    )
     recorder.symmetry(mirrors=("y",))
     _declare(recorder)
     fish = model_body(recorder, LENGTH, HEIGHT, WIDTH, FIN_THICKNESS, PROFILE)

@@ -57,7 +57,7 @@ EYE = 0.014
 
 def build() -> ProceduralModel:
     """Model the slender fish."""
-    recorder = Recorder("fish_eel", "fish", description="A long, slender fish, like an eel or a pike.")
+    recorder = Recorder("fish_eel", "fish", unit_m=1.0, description="A long, slender fish, like an eel or a pike.")
     _declare(recorder)
     fish = model_body(recorder, LENGTH, HEIGHT, WIDTH, FIN_THICKNESS, PROFILE)
     rear, long = (model_fin(recorder, fish, outline) for outline in (REAR_DORSAL, LONG_DORSAL))

@@ -54,7 +54,9 @@ EYE = 0.030
 
 def build() -> ProceduralModel:
     """Model the plump fish."""
-    recorder = Recorder("fish_puffer", "fish", description="A plump fish with small, thick fins, like a blimp.")
+    recorder = Recorder(
+        "fish_puffer", "fish", unit_m=1.0, description="A plump fish with small, thick fins, like a blimp."
+    )
     recorder.symmetry(mirrors=("y",))
     _declare(recorder)
     fish = model_body(recorder, LENGTH, HEIGHT, WIDTH, FIN_THICKNESS, PROFILE)

@@ -54,7 +54,9 @@ PECTORAL, PELVIC = (0.135, 0.070), (0.060, 0.045)
 
 def build() -> ProceduralModel:
     """Model the shark."""
-    recorder = Recorder("fish_shark", "fish", description="A fish with large, pointed fins: a shark, a tuna.")
+    recorder = Recorder(
+        "fish_shark", "fish", unit_m=1.0, description="A fish with large, pointed fins: a shark, a tuna."
+    )
     recorder.symmetry(mirrors=("y",))
     _declare(recorder)
     fish = model_body(recorder, LENGTH, HEIGHT, WIDTH, FIN_THICKNESS, PROFILE)

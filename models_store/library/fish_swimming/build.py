@@ -46,7 +46,9 @@ EYE = 0.016
 
 def build() -> ProceduralModel:
     """Model the swimming fish."""
-    recorder = Recorder("fish_swimming", "fish", description="A fish like a spindle, bent sideways as it swims.")
+    recorder = Recorder(
+        "fish_swimming", "fish", unit_m=1.0, description="A fish like a spindle, bent sideways as it swims."
+    )
     _declare(recorder)
     fish = model_body(recorder, LENGTH, HEIGHT, WIDTH, FIN_THICKNESS)
     short, rear, long = (model_fin(recorder, fish, outline) for outline in (SHORT_DORSAL, REAR_DORSAL, LONG_DORSAL))

@@ -32,19 +32,35 @@ def build() -> ProceduralModel:
     recorder = Recorder(
         "glass_with_stem",
         "glass_with_stem",
+        unit_m=stemware.UNIT_M,
         description="A drinking glass with foot, stem and rounded bowl: wine, water or champagne glass.",
     )
-    recorder.parameter("foot_diameter", "Foot diameter", 0.6, 1.5, base_value=FOOT_DIAMETER)
-    recorder.parameter("foot_height", "Foot height", 0.3, 3.5, base_value=FOOT_HEIGHT)
-    recorder.parameter("foot_hollow", "Foot hollow (height below its middle)", 0.0, 2.5, base_value=FOOT_HOLLOW)
+    recorder.parameter(
+        "foot_diameter", "Foot diameter", 0.6, 1.5, base_value=stemware.centimeters(FOOT_DIAMETER), unit="cm"
+    )
+    recorder.parameter("foot_height", "Foot height", 0.3, 3.5, base_value=stemware.centimeters(FOOT_HEIGHT), unit="cm")
+    recorder.parameter(
+        "foot_hollow",
+        "Foot hollow (height below its middle)",
+        0.0,
+        2.5,
+        base_value=stemware.centimeters(FOOT_HOLLOW),
+        unit="cm",
+    )
     recorder.limit("foot_hollow", maximum=("foot_height", 0.25, 1.0))
-    recorder.parameter("stem_length", "Stem length (without knop)", 0.1, 1.7, base_value=STEM_LENGTH)
-    recorder.parameter("stem_thickness", "Stem thickness", 0.5, 2.4, base_value=STEM_DIAMETER)
+    recorder.parameter(
+        "stem_length", "Stem length (without knop)", 0.1, 1.7, base_value=stemware.centimeters(STEM_LENGTH), unit="cm"
+    )
+    recorder.parameter(
+        "stem_thickness", "Stem thickness", 0.5, 2.4, base_value=stemware.centimeters(STEM_DIAMETER), unit="cm"
+    )
     recorder.parameter("stem_root", "Stem width at the foot (relative to the stem)", 0.6, 1.6, base_value=STEM_ROOT)
     recorder.limit("stem_root", maximum=("stem_thickness", 2.1, -0.5))
     recorder.parameter("knop_width", "Knop width (relative to the stem)", 0.625, 1.9, base_value=KNOP)
-    recorder.parameter("bowl_depth", "Bowl depth", 0.5, 1.7, base_value=BOWL_DEPTH)
-    recorder.parameter("rim_diameter", "Rim diameter", 0.5, 1.6, base_value=RIM_DIAMETER)
+    recorder.parameter("bowl_depth", "Bowl depth", 0.5, 1.7, base_value=stemware.centimeters(BOWL_DEPTH), unit="cm")
+    recorder.parameter(
+        "rim_diameter", "Rim diameter", 0.5, 1.6, base_value=stemware.centimeters(RIM_DIAMETER), unit="cm"
+    )
     recorder.parameter("belly_width", "Belly width (relative to the rim)", 0.5, 1.3, base_value=BELLY)
     recorder.parameter("lower_bowl_width", "Lower bowl width (relative to the belly)", 0.6, 1.2, base_value=LOWER)
     recorder.parameter(

@@ -28,28 +28,68 @@ BEADS = ("none", "one", "two", "three")
 def build() -> ProceduralModel:
     """Model the glass."""
     recorder = Recorder(
-        "glass_with_stem_cone", "glass_with_stem", description="A martini or cocktail glass with a conical bowl."
+        "glass_with_stem_cone",
+        "glass_with_stem",
+        unit_m=stemware.UNIT_M,
+        description="A martini or cocktail glass with a conical bowl.",
     )
-    recorder.parameter("foot_diameter", "Foot diameter", 0.6, 1.4, base_value=FOOT_DIAMETER)
-    recorder.parameter("foot_height", "Foot height", 0.3, 3.0, base_value=FOOT_HEIGHT)
-    recorder.parameter("foot_hollow", "Foot hollow (height below its middle)", 0.0, 2.5, base_value=FOOT_HOLLOW)
+    recorder.parameter(
+        "foot_diameter", "Foot diameter", 0.6, 1.4, base_value=stemware.centimeters(FOOT_DIAMETER), unit="cm"
+    )
+    recorder.parameter("foot_height", "Foot height", 0.3, 3.0, base_value=stemware.centimeters(FOOT_HEIGHT), unit="cm")
+    recorder.parameter(
+        "foot_hollow",
+        "Foot hollow (height below its middle)",
+        0.0,
+        2.5,
+        base_value=stemware.centimeters(FOOT_HOLLOW),
+        unit="cm",
+    )
     recorder.limit("foot_hollow", maximum=("foot_height", 0.25, 1.0))
-    recorder.parameter("stem_length", "Stem length", 0.4, 1.6, base_value=STEM_LENGTH)
-    recorder.parameter("stem_thickness", "Stem thickness", 0.5, 2.2, base_value=STEM_DIAMETER)
+    recorder.parameter("stem_length", "Stem length", 0.4, 1.6, base_value=stemware.centimeters(STEM_LENGTH), unit="cm")
+    recorder.parameter(
+        "stem_thickness", "Stem thickness", 0.5, 2.2, base_value=stemware.centimeters(STEM_DIAMETER), unit="cm"
+    )
     recorder.parameter("stem_root", "Stem width at the foot (relative to the stem)", 0.6, 1.8, base_value=STEM_ROOT)
     recorder.limit("stem_root", maximum=("stem_thickness", 2.3, -0.6))
     recorder.parameter("stem_top", "Stem width below the bowl (relative to the stem)", 0.8, 2.2, base_value=STEM_TOP)
-    recorder.parameter("rim_diameter", "Rim diameter", 0.6, 1.4, base_value=RIM_DIAMETER)
-    recorder.parameter("bowl_depth", "Bowl depth", 0.6, 1.5, base_value=BOWL_DEPTH)
+    recorder.parameter(
+        "rim_diameter", "Rim diameter", 0.6, 1.4, base_value=stemware.centimeters(RIM_DIAMETER), unit="cm"
+    )
+    recorder.parameter("bowl_depth", "Bowl depth", 0.6, 1.5, base_value=stemware.centimeters(BOWL_DEPTH), unit="cm")
     recorder.parameter("middle_width", "Width halfway up the bowl (relative to the rim)", 0.85, 1.4, base_value=MIDDLE)
     recorder.parameter("bottom_width", "Bowl bottom width (relative to the middle)", 0.6, 1.9, base_value=BOTTOM)
     recorder.choice("beads", "Beads on the stem", BEADS)
     some = (when("beads", 2, 4),)
-    recorder.parameter("bead_width", "Bead width", 0.75, 1.5, base_value=BEAD_DIAMETER, active_when=some)
+    recorder.parameter(
+        "bead_width",
+        "Bead width",
+        0.75,
+        1.5,
+        base_value=stemware.centimeters(BEAD_DIAMETER),
+        active_when=some,
+        unit="cm",
+    )
     recorder.limit("bead_width", minimum=("stem_thickness", 0.25, 0.5))
-    recorder.parameter("bead_height", "Bead height", 0.25, 1.4, base_value=BEAD_HEIGHT, active_when=some)
+    recorder.parameter(
+        "bead_height",
+        "Bead height",
+        0.25,
+        1.4,
+        base_value=stemware.centimeters(BEAD_HEIGHT),
+        active_when=some,
+        unit="cm",
+    )
     recorder.limit("bead_height", maximum=("stem_length", 0.1, 1.1))
-    recorder.parameter("bead_drop", "Distance from bead to bowl", 0.0, 4.0, base_value=BEAD_DROP, active_when=some)
+    recorder.parameter(
+        "bead_drop",
+        "Distance from bead to bowl",
+        0.0,
+        4.0,
+        base_value=stemware.centimeters(BEAD_DROP),
+        active_when=some,
+        unit="cm",
+    )
     recorder.limit("bead_drop", maximum=("stem_length", 0.0, 4.0))
 
     foot = stemware.foot(recorder, FOOT_EDGE, 0.4 * FOOT_HEIGHT, length="foot_height")

@@ -30,20 +30,38 @@ BOTTOM = 0.42  # diameter of the bowl's bottom, relative to the lower bowl's
 def build() -> ProceduralModel:
     """Model the flute."""
     recorder = Recorder(
-        "glass_with_stem_flute", "glass_with_stem", description="A champagne flute or another tall glass with a stem."
+        "glass_with_stem_flute",
+        "glass_with_stem",
+        unit_m=stemware.UNIT_M,
+        description="A champagne flute or another tall glass with a stem.",
     )
-    recorder.parameter("foot_diameter", "Foot diameter", 0.7, 1.5, base_value=FOOT_DIAMETER)
-    recorder.parameter("foot_height", "Foot height", 0.3, 3.0, base_value=FOOT_HEIGHT)
-    recorder.parameter("foot_hollow", "Foot hollow (height below its middle)", 0.0, 2.5, base_value=FOOT_HOLLOW)
+    recorder.parameter(
+        "foot_diameter", "Foot diameter", 0.7, 1.5, base_value=stemware.centimeters(FOOT_DIAMETER), unit="cm"
+    )
+    recorder.parameter("foot_height", "Foot height", 0.3, 3.0, base_value=stemware.centimeters(FOOT_HEIGHT), unit="cm")
+    recorder.parameter(
+        "foot_hollow",
+        "Foot hollow (height below its middle)",
+        0.0,
+        2.5,
+        base_value=stemware.centimeters(FOOT_HOLLOW),
+        unit="cm",
+    )
     recorder.limit("foot_hollow", maximum=("foot_height", 0.25, 1.0))
-    recorder.parameter("stem_length", "Stem length", 0.15, 1.6, base_value=STEM_LENGTH)
-    recorder.parameter("stem_thickness", "Stem thickness", 0.5, 2.2, base_value=STEM_DIAMETER)
+    recorder.parameter("stem_length", "Stem length", 0.15, 1.6, base_value=stemware.centimeters(STEM_LENGTH), unit="cm")
+    recorder.parameter(
+        "stem_thickness", "Stem thickness", 0.5, 2.2, base_value=stemware.centimeters(STEM_DIAMETER), unit="cm"
+    )
     recorder.parameter("stem_root", "Stem width at the foot (relative to the stem)", 0.6, 2.0, base_value=STEM_ROOT)
     recorder.limit("stem_root", maximum=("stem_thickness", 2.4, -0.6))
     recorder.parameter("stem_top", "Stem width below the bowl (relative to the stem)", 0.75, 2.2, base_value=STEM_TOP)
-    recorder.parameter("rim_diameter", "Rim diameter", 0.7, 1.8, base_value=RIM_DIAMETER)
-    recorder.parameter("bowl_depth", "Bowl depth", 0.6, 1.3, base_value=BOWL_DEPTH)
-    recorder.parameter("lip", "Lip (how far the rim turns outwards)", -1.5, 3.0, base_value=LIP)
+    recorder.parameter(
+        "rim_diameter", "Rim diameter", 0.7, 1.8, base_value=stemware.centimeters(RIM_DIAMETER), unit="cm"
+    )
+    recorder.parameter("bowl_depth", "Bowl depth", 0.6, 1.3, base_value=stemware.centimeters(BOWL_DEPTH), unit="cm")
+    recorder.parameter(
+        "lip", "Lip (how far the rim turns outwards)", -1.5, 3.0, base_value=stemware.centimeters(LIP), unit="cm"
+    )
     recorder.parameter("upper_width", "Upper bowl width (relative to the rim)", 0.85, 1.2, base_value=UPPER)
     recorder.parameter("belly_width", "Middle bowl width (relative to the upper bowl)", 0.7, 1.2, base_value=BELLY)
     recorder.parameter("lower_width", "Lower bowl width (relative to the middle)", 0.6, 1.15, base_value=LOWER)

@@ -33,20 +33,45 @@ def build() -> ProceduralModel:
     recorder = Recorder(
         "glass_with_stem_goblet",
         "glass_with_stem",
+        unit_m=stemware.UNIT_M,
         description="A goblet or chalice: trumpet-shaped foot, thick stem with or without a bead, deep bowl.",
     )
-    recorder.parameter("foot_diameter", "Foot diameter", 0.65, 1.5, base_value=FOOT_DIAMETER)
-    recorder.parameter("foot_edge", "Height of the foot's edge", 0.5, 3.0, base_value=FOOT_EDGE)
+    recorder.parameter(
+        "foot_diameter", "Foot diameter", 0.65, 1.5, base_value=stemware.centimeters(FOOT_DIAMETER), unit="cm"
+    )
+    recorder.parameter(
+        "foot_edge", "Height of the foot's edge", 0.5, 3.0, base_value=stemware.centimeters(FOOT_EDGE), unit="cm"
+    )
     recorder.parameter("foot_middle", "Foot slope width (relative to the foot)", 0.6, 1.4, base_value=FOOT_MIDDLE)
-    recorder.parameter("trumpet_length", "Length of the foot up to the waist", 0.25, 1.8, base_value=TRUMPET_LENGTH)
+    recorder.parameter(
+        "trumpet_length",
+        "Length of the foot up to the waist",
+        0.25,
+        1.8,
+        base_value=stemware.centimeters(TRUMPET_LENGTH),
+        unit="cm",
+    )
     recorder.parameter("foot_hollow", "Foot hollow (relative to the length of the foot)", 0.02, 1.2, base_value=HOLLOW)
-    recorder.parameter("waist_width", "Waist width", 0.4, 2.0, base_value=WAIST_DIAMETER)
+    recorder.parameter(
+        "waist_width", "Waist width", 0.4, 2.0, base_value=stemware.centimeters(WAIST_DIAMETER), unit="cm"
+    )
     recorder.limit("waist_width", maximum=("foot_diameter", 0.0, 1.4))
-    recorder.parameter("neck_length", "Length from the waist to the bowl", 0.3, 2.2, base_value=NECK_LENGTH)
+    recorder.parameter(
+        "neck_length",
+        "Length from the waist to the bowl",
+        0.3,
+        2.2,
+        base_value=stemware.centimeters(NECK_LENGTH),
+        unit="cm",
+    )
     recorder.parameter("neck_width", "Width below the bowl (relative to the waist)", 0.8, 2.0, base_value=NECK)
-    recorder.parameter("rim_diameter", "Rim diameter", 0.65, 1.4, base_value=RIM_DIAMETER)
-    recorder.parameter("bowl_depth", "Bowl depth", 0.6, 1.5, base_value=BOWL_DEPTH)
-    recorder.parameter("lip", "Lip (how far the rim turns outwards)", -1.5, 3.5, base_value=LIP)
+    recorder.parameter(
+        "rim_diameter", "Rim diameter", 0.65, 1.4, base_value=stemware.centimeters(RIM_DIAMETER), unit="cm"
+    )
+    recorder.parameter("bowl_depth", "Bowl depth", 0.6, 1.5, base_value=stemware.centimeters(BOWL_DEPTH), unit="cm")
+    recorder.parameter(
+        "lip", "Lip (how far the rim turns outwards)", -1.5, 3.5, base_value=stemware.centimeters(LIP), unit="cm"
+    )
     recorder.parameter("belly_width", "Belly width (relative to the rim)", 0.75, 1.2, base_value=BELLY)
     recorder.parameter("lower_bowl_width", "Lower bowl width (relative to the belly)", 0.75, 1.15, base_value=LOWER)
     recorder.parameter(
@@ -54,9 +79,25 @@ def build() -> ProceduralModel:
     )
     recorder.switch("bead", "Bead on the stem")
     there = (when("bead", 1),)
-    recorder.parameter("bead_width", "Bead width", 0.8, 1.6, base_value=BEAD_DIAMETER, active_when=there)
+    recorder.parameter(
+        "bead_width",
+        "Bead width",
+        0.8,
+        1.6,
+        base_value=stemware.centimeters(BEAD_DIAMETER),
+        active_when=there,
+        unit="cm",
+    )
     recorder.limit("bead_width", minimum=("waist_width", 0.2, 0.6))
-    recorder.parameter("bead_height", "Bead height", 0.3, 1.6, base_value=BEAD_HEIGHT, active_when=there)
+    recorder.parameter(
+        "bead_height",
+        "Bead height",
+        0.3,
+        1.6,
+        base_value=stemware.centimeters(BEAD_HEIGHT),
+        active_when=there,
+        unit="cm",
+    )
     recorder.limit("bead_height", maximum=("neck_length", 0.4, 1.0))
 
     foot = stemware.foot(recorder, FOOT_EDGE, 0.3 * TRUMPET_LENGTH, length="trumpet_length", edge_size="foot_edge")

@@ -33,21 +33,49 @@ def build() -> ProceduralModel:
     recorder = Recorder(
         "glass_with_stem_round",
         "glass_with_stem",
+        unit_m=stemware.UNIT_M,
         description="A glass with a round bowl on a short stem: coupe, balloon glass or brandy snifter.",
     )
-    recorder.parameter("foot_diameter", "Foot diameter", 0.6, 1.5, base_value=FOOT_DIAMETER)
-    recorder.parameter("foot_height", "Foot height", 0.3, 2.5, base_value=FOOT_HEIGHT)
-    recorder.parameter("foot_hollow", "Foot hollow (height below its middle)", 0.0, 2.0, base_value=FOOT_HOLLOW)
+    recorder.parameter(
+        "foot_diameter", "Foot diameter", 0.6, 1.5, base_value=stemware.centimeters(FOOT_DIAMETER), unit="cm"
+    )
+    recorder.parameter("foot_height", "Foot height", 0.3, 2.5, base_value=stemware.centimeters(FOOT_HEIGHT), unit="cm")
+    recorder.parameter(
+        "foot_hollow",
+        "Foot hollow (height below its middle)",
+        0.0,
+        2.0,
+        base_value=stemware.centimeters(FOOT_HOLLOW),
+        unit="cm",
+    )
     recorder.limit("foot_hollow", maximum=("foot_height", 0.25, 1.0))
     recorder.parameter("foot_slope", "Foot slope width (relative to the foot)", 0.6, 1.4, base_value=FOOT_RISE)
-    recorder.parameter("stem_length", "Stem length", 0.1, 2.0, base_value=STEM_LENGTH)
-    recorder.parameter("stem_thickness", "Stem thickness", 0.5, 2.2, base_value=STEM_DIAMETER)
+    recorder.parameter("stem_length", "Stem length", 0.1, 2.0, base_value=stemware.centimeters(STEM_LENGTH), unit="cm")
+    recorder.parameter(
+        "stem_thickness", "Stem thickness", 0.5, 2.2, base_value=stemware.centimeters(STEM_DIAMETER), unit="cm"
+    )
     recorder.parameter("stem_root", "Stem width at the foot (relative to the stem)", 0.6, 1.8, base_value=STEM_ROOT)
     recorder.limit("stem_root", maximum=("stem_thickness", 2.3, -0.6))
     recorder.parameter("stem_top", "Stem width below the bowl (relative to the stem)", 0.8, 2.0, base_value=STEM_TOP)
-    recorder.parameter("belly_diameter", "Bowl diameter", 0.6, 1.3, base_value=BELLY_DIAMETER)
-    recorder.parameter("lower_depth", "Bowl depth below its widest place", 0.4, 1.5, base_value=LOWER_DEPTH)
-    recorder.parameter("upper_depth", "Bowl depth above its widest place", 0.2, 1.8, base_value=UPPER_DEPTH)
+    recorder.parameter(
+        "belly_diameter", "Bowl diameter", 0.6, 1.3, base_value=stemware.centimeters(BELLY_DIAMETER), unit="cm"
+    )
+    recorder.parameter(
+        "lower_depth",
+        "Bowl depth below its widest place",
+        0.4,
+        1.5,
+        base_value=stemware.centimeters(LOWER_DEPTH),
+        unit="cm",
+    )
+    recorder.parameter(
+        "upper_depth",
+        "Bowl depth above its widest place",
+        0.2,
+        1.8,
+        base_value=stemware.centimeters(UPPER_DEPTH),
+        unit="cm",
+    )
     recorder.parameter("rim_inset", "Rim inset (relative to the bowl's diameter)", -0.3, 3.0, base_value=RIM_INSET)
     recorder.limit("rim_inset", maximum=("upper_depth", -0.3, 2.2))
     recorder.parameter("lower_width", "Lower bowl width (relative to the bowl)", 0.8, 1.15, base_value=LOWER)

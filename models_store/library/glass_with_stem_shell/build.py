@@ -7,7 +7,7 @@ anything from a shallow coupe to a tulip.
 from pathlib import Path
 
 from models_store.library.aids.lathe import Lathe, control_diameter, draw_in, widen
-from models_store.library.aids.stemware import SIDES
+from models_store.library.aids.stemware import SIDES, UNIT_M, centimeters
 from models_store.library.author import publish
 from shapewright.modeling import ProceduralModel, Recorder, group
 
@@ -33,23 +33,24 @@ def build() -> ProceduralModel:
     recorder = Recorder(
         "glass_with_stem_shell",
         "glass_with_stem",
+        unit_m=UNIT_M,
         description="A glass with a stem as one thin wall without thickness: wine glass, coupe or goblet.",
         closed=False,
     )
-    recorder.parameter("foot_diameter", "Foot diameter", 0.6, 1.5, base_value=FOOT_DIAMETER)
-    recorder.parameter("foot_edge", "Height of the foot's edge", 0.2, 2.5, base_value=FOOT_EDGE)
-    recorder.parameter("foot_height", "Foot height", 0.3, 3.0, base_value=FOOT_HEIGHT)
+    recorder.parameter("foot_diameter", "Foot diameter", 0.6, 1.5, base_value=centimeters(FOOT_DIAMETER), unit="cm")
+    recorder.parameter("foot_edge", "Height of the foot's edge", 0.2, 2.5, base_value=centimeters(FOOT_EDGE), unit="cm")
+    recorder.parameter("foot_height", "Foot height", 0.3, 3.0, base_value=centimeters(FOOT_HEIGHT), unit="cm")
     recorder.parameter("foot_slope", "Foot slope width (relative to the foot)", 0.6, 1.5, base_value=FOOT_SLOPE)
-    recorder.parameter("stem_length", "Stem length", 0.15, 1.6, base_value=STEM_LENGTH)
-    recorder.parameter("stem_thickness", "Stem thickness", 0.5, 3.0, base_value=STEM_DIAMETER)
+    recorder.parameter("stem_length", "Stem length", 0.15, 1.6, base_value=centimeters(STEM_LENGTH), unit="cm")
+    recorder.parameter("stem_thickness", "Stem thickness", 0.5, 3.0, base_value=centimeters(STEM_DIAMETER), unit="cm")
     recorder.parameter("stem_root", "Stem width at the foot (relative to the stem)", 0.65, 1.8, base_value=STEM_ROOT)
     recorder.limit("stem_root", maximum=("stem_thickness", 2.1, -0.4))
     recorder.parameter("stem_top", "Stem width below the bowl (relative to the stem)", 0.7, 2.0, base_value=STEM_TOP)
     recorder.limit("stem_top", maximum=("stem_thickness", 2.15, -0.45))
-    recorder.parameter("rim_diameter", "Rim diameter", 0.5, 1.6, base_value=RIM_DIAMETER)
+    recorder.parameter("rim_diameter", "Rim diameter", 0.5, 1.6, base_value=centimeters(RIM_DIAMETER), unit="cm")
     recorder.limit("rim_diameter", minimum=("stem_thickness", -0.25, 0.6))
-    recorder.parameter("bowl_depth", "Bowl depth", 0.4, 1.7, base_value=BOWL_DEPTH)
-    recorder.parameter("lip", "Lip (how far the rim turns outwards)", -3.0, 4.0, base_value=LIP)
+    recorder.parameter("bowl_depth", "Bowl depth", 0.4, 1.7, base_value=centimeters(BOWL_DEPTH), unit="cm")
+    recorder.parameter("lip", "Lip (how far the rim turns outwards)", -3.0, 4.0, base_value=centimeters(LIP), unit="cm")
     recorder.parameter("upper_width", "Upper bowl width (relative to the rim)", 0.9, 1.12, base_value=UPPER)
     recorder.parameter("belly_width", "Middle bowl width (relative to the upper bowl)", 0.7, 1.1, base_value=BELLY)
     recorder.parameter("lower_width", "Lower bowl width (relative to the middle)", 0.65, 1.3, base_value=LOWER)

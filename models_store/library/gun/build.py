@@ -24,7 +24,7 @@ IN_SLIDE, BARE, TOGGLE = 1, 2, 3
 
 def build() -> ProceduralModel:
     """Model the pistol."""
-    recorder = Recorder("gun", "gun", description="A semi-automatic pistol, with a slide or a bare barrel.")
+    recorder = Recorder("gun", "gun", unit_m=1.0, description="A semi-automatic pistol, with a slide or a bare barrel.")
     _declare(recorder)
     slide = _slide(recorder)
     frame = _frame(recorder, slide)
@@ -57,20 +57,20 @@ def _declare(recorder: Recorder) -> None:
         base_value=BARREL_DIAMETER,
         active_when=bare,
     )
-    recorder.parameter("frame_height", "Frame height", 0.6, 1.6)
+    recorder.parameter("frame_height", "Frame height", 0.6, 1.6, kind="length")
     recorder.parameter("dust_cover", "Frame length before the guard", 0.05, 1.6, unit="m", base_value=DUST_COVER)
     recorder.limit("dust_cover", maximum=("slide_length", -1.5, 2.8))
     recorder.parameter("tang", "Tang behind the grip", 0.2, 2.5, unit="m", base_value=TANG)
     recorder.parameter("grip_length", "Grip length", 0.6, 1.4, unit="m", base_value=GRIP_LENGTH)
     recorder.parameter("grip_depth", "Grip depth", 0.75, 1.35, unit="m", base_value=GRIP_DEPTH)
     recorder.parameter("grip_base", "Grip depth at its base (share)", 0.75, 1.5, base_value=1.0)
-    recorder.parameter("grip_rake", "Grip rake (deg)", 0.1, 2.5, base_value=GRIP_RAKE_DEG)
-    recorder.parameter("grip_bend", "Grip bend (deg)", -1.0, 2.5, base_value=GRIP_BEND_DEG)
+    recorder.parameter("grip_rake", "Grip rake (deg)", 0.1, 2.5, base_value=GRIP_RAKE_DEG, kind="angle")
+    recorder.parameter("grip_bend", "Grip bend (deg)", -1.0, 2.5, base_value=GRIP_BEND_DEG, kind="angle")
     recorder.parameter("grip_width", "Grip width", 0.6, 1.5, unit="m", base_value=GRIP_WIDTH)
     recorder.parameter("magazine", "Magazine below the grip", 0.1, 3.0, unit="m", base_value=0.008)
     recorder.parameter("guard_length", "Trigger guard length", 0.75, 1.25, unit="m", base_value=GUARD_LENGTH)
     recorder.parameter("guard_height", "Trigger guard height", 0.7, 1.25, unit="m", base_value=GUARD_HEIGHT)
-    recorder.parameter("thickness", "Overall thickness", 0.55, 1.5)
+    recorder.parameter("thickness", "Overall thickness", 0.55, 1.5, kind="length")
 
 
 def _slide(recorder: Recorder) -> Loft:

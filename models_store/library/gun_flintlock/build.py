@@ -18,7 +18,7 @@ BARREL_LENGTH, BARREL_DIAMETER = 0.24, 0.020
 
 def build() -> ProceduralModel:
     """Model the pistol."""
-    recorder = Recorder("gun_flintlock", "gun", description="A flintlock or percussion pistol.")
+    recorder = Recorder("gun_flintlock", "gun", unit_m=1.0, description="A flintlock or percussion pistol.")
     _declare(recorder)
     fore = _fore_end(recorder)
     butt = _butt(recorder, fore)
@@ -43,7 +43,9 @@ def _declare(recorder: Recorder) -> None:
     recorder.choice("guard", "Trigger guard", ("with", "without"))
     recorder.parameter("butt_length", "Butt length", 0.7, 1.4, unit="m", base_value=BUTT_LENGTH)
     recorder.parameter("butt_depth", "Butt depth", 0.7, 1.35, unit="m", base_value=BUTT_DEPTH)
-    recorder.parameter("butt_bend", "Bend of the butt (deg a section)", 0.5, 1.8, base_value=BUTT_BEND_DEG)
+    recorder.parameter(
+        "butt_bend", "Bend of the butt (deg a section)", 0.5, 1.8, base_value=BUTT_BEND_DEG, kind="angle"
+    )
     recorder.parameter("butt_cap", "Diameter of the butt's end (share)", 0.8, 1.7, base_value=1.0)
     recorder.parameter("fore_length", "Fore-end length", 0.6, 1.6, unit="m", base_value=FORE_LENGTH)
     recorder.parameter("stock_height", "Height of the wood", 0.7, 1.5, unit="m", base_value=STOCK_HEIGHT)
@@ -54,9 +56,13 @@ def _declare(recorder: Recorder) -> None:
     recorder.parameter(
         "lock_height", "Height of the cock", 0.5, 1.6, unit="m", base_value=0.045, active_when=(when("lock", 1),)
     )
-    recorder.parameter("guard_length", "Trigger guard length", 0.75, 1.5, active_when=(when("guard", 1),))
-    recorder.parameter("guard_height", "Trigger guard height", 0.75, 1.4, active_when=(when("guard", 1),))
-    recorder.parameter("thickness", "Overall thickness", 0.6, 1.5)
+    recorder.parameter(
+        "guard_length", "Trigger guard length", 0.75, 1.5, active_when=(when("guard", 1),), kind="length"
+    )
+    recorder.parameter(
+        "guard_height", "Trigger guard height", 0.75, 1.4, active_when=(when("guard", 1),), kind="length"
+    )
+    recorder.parameter("thickness", "Overall thickness", 0.6, 1.5, kind="length")
 
 
 def _fore_end(recorder: Recorder) -> Loft:

@@ -21,7 +21,7 @@ COLUMN, TRIPOD, BIPOD = 1, 2, 3
 
 def build() -> ProceduralModel:
     """Model the machine gun."""
-    recorder = Recorder("gun_machine", "gun", description="A heavy machine gun on its mount.")
+    recorder = Recorder("gun_machine", "gun", unit_m=1.0, description="A heavy machine gun on its mount.")
     _declare(recorder)
     box = _box(recorder)
     barrel = _barrel(recorder, box)
@@ -49,7 +49,7 @@ def _declare(recorder: Recorder) -> None:
     recorder.parameter("barrel_length", "Barrel length", 0.5, 1.4, unit="m", base_value=BARREL_LENGTH)
     recorder.limit("barrel_length", minimum=("jacket_length", 0.05, 0.42))
     recorder.parameter("barrel_diameter", "Barrel diameter", 0.7, 1.6, unit="m", base_value=BARREL_DIAMETER)
-    recorder.parameter("rear_length", "Length behind the box", 0.6, 1.6)
+    recorder.parameter("rear_length", "Length behind the box", 0.6, 1.6, kind="length")
     recorder.parameter(
         "column_length",
         "Column length",
@@ -69,7 +69,7 @@ def _declare(recorder: Recorder) -> None:
         active_when=(when("mount", COLUMN),),
     )
     legs = (when("mount", TRIPOD, BIPOD),)
-    recorder.parameter("leg_length", "Leg length", 0.5, 1.3, active_when=legs)
+    recorder.parameter("leg_length", "Leg length", 0.5, 1.3, active_when=legs, kind="length")
     recorder.parameter("leg_spread", "Spread of the tripod's legs", 0.6, 1.25, active_when=(when("mount", TRIPOD),))
     recorder.parameter(
         "mount_place",
@@ -80,7 +80,7 @@ def _declare(recorder: Recorder) -> None:
         base_value=0.12,
         active_when=(when("mount", COLUMN, TRIPOD),),
     )
-    recorder.parameter("thickness", "Overall thickness", 0.6, 1.4)
+    recorder.parameter("thickness", "Overall thickness", 0.6, 1.4, kind="length")
 
 
 def _box(recorder: Recorder) -> Loft:

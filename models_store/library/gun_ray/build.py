@@ -20,7 +20,7 @@ RING_PLACES = (0.25, 0.5, 0.75)
 
 def build() -> ProceduralModel:
     """Model the ray gun."""
-    recorder = Recorder("gun_ray", "gun", description="A ray gun of toys and comics.")
+    recorder = Recorder("gun_ray", "gun", unit_m=1.0, description="A ray gun of toys and comics.")
     _declare(recorder)
     body = _body(recorder)
     barrel, *on_barrel = _barrel(recorder, body)
@@ -54,22 +54,26 @@ def _declare(recorder: Recorder) -> None:
     recorder.parameter("body_length", "Body length", 0.65, 1.5, unit="m", base_value=BODY_LENGTH)
     recorder.parameter("body_diameter", "Body diameter", 0.7, 1.3, unit="m", base_value=BODY_DIAMETER)
     recorder.parameter("body_rear", "Diameter of the body's rear (share)", 0.75, 1.5, base_value=1.0)
-    recorder.parameter("body_tilt", "Tilt of the body's rear (deg)", -1.0, 2.5, base_value=12.0)
+    recorder.parameter("body_tilt", "Tilt of the body's rear (deg)", -1.0, 2.5, base_value=12.0, kind="angle")
     recorder.parameter("barrel_length", "Barrel length", 0.5, 1.8, unit="m", base_value=BARREL_LENGTH)
     recorder.parameter("barrel_diameter", "Barrel diameter", 0.6, 1.6, unit="m", base_value=BARREL_DIAMETER)
     recorder.parameter(
         "ring_diameter", "Ring diameter", 0.7, 1.5, unit="m", base_value=RING_DIAMETER, active_when=(when("rings", 1),)
     )
     recorder.parameter("nose_diameter", "Nose diameter", 0.5, 1.5, unit="m", base_value=NOSE_DIAMETER)
-    recorder.parameter("nose_length", "Nose length", 0.5, 1.6)
+    recorder.parameter("nose_length", "Nose length", 0.5, 1.6, kind="length")
     recorder.parameter("grip_length", "Grip length", 0.65, 1.3, unit="m", base_value=GRIP_LENGTH)
     recorder.parameter("grip_depth", "Grip depth", 0.7, 1.3, unit="m", base_value=GRIP_DEPTH)
-    recorder.parameter("grip_rake", "Grip rake (deg)", -1.0, 2.5, base_value=GRIP_RAKE_DEG)
-    recorder.parameter("grip_waves", "Depth of the finger grooves", 0.0, 2.0, base_value=0.006)
-    recorder.parameter("guard_length", "Trigger guard length", 0.75, 1.3, active_when=(when("guard", 1),))
-    recorder.parameter("guard_height", "Trigger guard height", 0.75, 1.3, active_when=(when("guard", 1),))
+    recorder.parameter("grip_rake", "Grip rake (deg)", -1.0, 2.5, base_value=GRIP_RAKE_DEG, kind="angle")
+    recorder.parameter("grip_waves", "Depth of the finger grooves", 0.0, 2.0, unit="m", base_value=0.006)
+    recorder.parameter(
+        "guard_length", "Trigger guard length", 0.75, 1.3, active_when=(when("guard", 1),), kind="length"
+    )
+    recorder.parameter(
+        "guard_height", "Trigger guard height", 0.75, 1.3, active_when=(when("guard", 1),), kind="length"
+    )
     recorder.parameter("fin_height", "Fin height", 0.5, 1.6, unit="m", base_value=0.045, active_when=(when("fin", 2),))
-    recorder.parameter("thickness", "Overall thickness", 0.6, 1.2)
+    recorder.parameter("thickness", "Overall thickness", 0.6, 1.2, kind="length")
 
 
 def _body(recorder: Recorder) -> Loft:

@@ -22,7 +22,7 @@ GRIP_RAKE_DEG, GRIP_BEND_DEG = 32.0, -8.0
 
 def build() -> ProceduralModel:
     """Model the revolver."""
-    recorder = Recorder("gun_revolver", "gun", description="A revolver with a closed or open frame.")
+    recorder = Recorder("gun_revolver", "gun", unit_m=1.0, description="A revolver with a closed or open frame.")
     _declare(recorder)
     shield = beam(
         recorder,
@@ -75,13 +75,17 @@ def _declare(recorder: Recorder) -> None:
     recorder.parameter("grip_length", "Grip length", 0.65, 1.5, unit="m", base_value=GRIP_LENGTH)
     recorder.parameter("grip_depth", "Grip depth", 0.75, 1.5, unit="m", base_value=GRIP_DEPTH)
     recorder.parameter("grip_base", "Grip depth at its base (share)", 0.7, 1.5, base_value=1.25)
-    recorder.parameter("grip_rake", "Grip rake (deg)", 0.3, 1.75, base_value=GRIP_RAKE_DEG)
-    recorder.parameter("grip_bend", "Grip bend (deg)", -1.5, 2.5, base_value=GRIP_BEND_DEG)
+    recorder.parameter("grip_rake", "Grip rake (deg)", 0.3, 1.75, base_value=GRIP_RAKE_DEG, kind="angle")
+    recorder.parameter("grip_bend", "Grip bend (deg)", -1.5, 2.5, base_value=GRIP_BEND_DEG, kind="angle")
     recorder.parameter("grip_width", "Grip width", 0.6, 1.3, unit="m", base_value=GRIP_WIDTH)
-    recorder.parameter("guard_length", "Trigger guard length", 0.75, 1.3, active_when=(when("guard", 1),))
-    recorder.parameter("guard_height", "Trigger guard height", 0.75, 1.3, active_when=(when("guard", 1),))
+    recorder.parameter(
+        "guard_length", "Trigger guard length", 0.75, 1.3, active_when=(when("guard", 1),), kind="length"
+    )
+    recorder.parameter(
+        "guard_height", "Trigger guard height", 0.75, 1.3, active_when=(when("guard", 1),), kind="length"
+    )
     recorder.parameter("sight_height", "Front sight height", 0.3, 2.0, unit="m", base_value=0.009)
-    recorder.parameter("thickness", "Overall thickness", 0.6, 1.3)
+    recorder.parameter("thickness", "Overall thickness", 0.6, 1.3, kind="length")
 
 
 def _cylinder(recorder: Recorder, shield: Loft) -> Loft:

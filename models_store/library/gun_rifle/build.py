@@ -33,7 +33,7 @@ BOX, CURVED, DRUM = 2, 3, 4
 
 def build() -> ProceduralModel:
     """Model the rifle."""
-    recorder = Recorder("gun_rifle", "gun", description="A rifle or carbine with a one-piece stock.")
+    recorder = Recorder("gun_rifle", "gun", unit_m=1.0, description="A rifle or carbine with a one-piece stock.")
     _declare(recorder)
     fore = _fore_end(recorder)
     butt = _butt(recorder, fore)
@@ -58,7 +58,7 @@ def _declare(recorder: Recorder) -> None:
     recorder.choice("bipod", "Bipod", ("without", "with"))
     recorder.parameter("butt_length", "Butt length", 0.6, 1.3, unit="m", base_value=BUTT_LENGTH)
     recorder.parameter("butt_height", "Butt height", 0.6, 1.4, unit="m", base_value=BUTT_HEIGHT)
-    recorder.parameter("butt_drop", "Drop of the butt (deg)", 0.0, 2.8, base_value=BUTT_DROP_DEG)
+    recorder.parameter("butt_drop", "Drop of the butt (deg)", 0.0, 2.8, base_value=BUTT_DROP_DEG, kind="angle")
     recorder.parameter("wrist_height", "Wrist height", 0.7, 1.4, unit="m", base_value=0.044)
     recorder.parameter("barrel_length", "Barrel length", 0.45, 1.7, unit="m", base_value=BARREL_LENGTH)
     recorder.parameter("fore_length", "Fore-end length", 0.5, 1.5, unit="m", base_value=FORE_LENGTH)
@@ -82,10 +82,10 @@ def _declare(recorder: Recorder) -> None:
     recorder.parameter(
         "scope_diameter", "Scope diameter", 0.7, 1.5, unit="m", base_value=0.030, active_when=(when("scope", 2),)
     )
-    recorder.parameter("scope_height", "Scope height", 0.0, 2.0, active_when=(when("scope", 2),))
-    recorder.parameter("guard_length", "Trigger guard length", 0.75, 1.5)
-    recorder.parameter("guard_height", "Trigger guard height", 0.7, 1.3)
-    recorder.parameter("thickness", "Overall thickness", 0.6, 1.6)
+    recorder.parameter("scope_height", "Scope height", 0.0, 2.0, active_when=(when("scope", 2),), kind="length")
+    recorder.parameter("guard_length", "Trigger guard length", 0.75, 1.5, kind="length")
+    recorder.parameter("guard_height", "Trigger guard height", 0.7, 1.3, kind="length")
+    recorder.parameter("thickness", "Overall thickness", 0.6, 1.6, kind="length")
 
 
 def _fore_end(recorder: Recorder) -> Loft:

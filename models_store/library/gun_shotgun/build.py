@@ -22,7 +22,7 @@ PUMP, OVER_UNDER, SIDE_BY_SIDE = 1, 2, 3
 
 def build() -> ProceduralModel:
     """Model the shotgun."""
-    recorder = Recorder("gun_shotgun", "gun", description="A pump gun or a double-barrelled shotgun.")
+    recorder = Recorder("gun_shotgun", "gun", unit_m=1.0, description="A pump gun or a double-barrelled shotgun.")
     _declare(recorder)
     receiver = _receiver(recorder)
     barrels = _barrels(recorder, receiver)
@@ -61,26 +61,38 @@ def _declare(recorder: Recorder) -> None:
         "stock_height", "Stock height", 0.6, 1.4, unit="m", base_value=STOCK_HEIGHT, active_when=(when("rear", 1),)
     )
     recorder.parameter(
-        "stock_drop", "Drop of the stock (deg)", 0.0, 2.2, base_value=STOCK_DROP_DEG, active_when=(when("rear", 1),)
+        "stock_drop",
+        "Drop of the stock (deg)",
+        0.0,
+        2.2,
+        base_value=STOCK_DROP_DEG,
+        active_when=(when("rear", 1),),
+        kind="angle",
     )
     recorder.parameter(
         "grip_length", "Grip length", 0.7, 1.8, unit="m", base_value=GRIP_LENGTH, active_when=(when("rear", 2),)
     )
     recorder.parameter("grip_depth", "Grip depth", 0.6, 1.5, unit="m", base_value=0.04, active_when=(when("rear", 2),))
     recorder.parameter(
-        "grip_rake", "Grip rake (deg)", 0.3, 1.6, base_value=GRIP_RAKE_DEG, active_when=(when("rear", 2),)
+        "grip_rake", "Grip rake (deg)", 0.3, 1.6, base_value=GRIP_RAKE_DEG, active_when=(when("rear", 2),), kind="angle"
     )
-    recorder.parameter("grip_bend", "Grip bend (deg)", -1.0, 3.0, base_value=8.0, active_when=(when("rear", 2),))
-    recorder.parameter("guard_length", "Trigger guard length", 0.75, 1.4, active_when=(when("guard", 1),))
-    recorder.parameter("guard_height", "Trigger guard height", 0.75, 1.3, active_when=(when("guard", 1),))
+    recorder.parameter(
+        "grip_bend", "Grip bend (deg)", -1.0, 3.0, base_value=8.0, active_when=(when("rear", 2),), kind="angle"
+    )
+    recorder.parameter(
+        "guard_length", "Trigger guard length", 0.75, 1.4, active_when=(when("guard", 1),), kind="length"
+    )
+    recorder.parameter(
+        "guard_height", "Trigger guard height", 0.75, 1.3, active_when=(when("guard", 1),), kind="length"
+    )
     recorder.parameter(
         "scope_length", "Scope length", 0.5, 1.3, unit="m", base_value=0.22, active_when=(when("scope", 2),)
     )
     recorder.parameter(
         "scope_diameter", "Scope diameter", 0.8, 1.6, unit="m", base_value=0.030, active_when=(when("scope", 2),)
     )
-    recorder.parameter("scope_height", "Scope height", 0.0, 1.6, active_when=(when("scope", 2),))
-    recorder.parameter("thickness", "Overall thickness", 0.6, 1.6)
+    recorder.parameter("scope_height", "Scope height", 0.0, 1.6, active_when=(when("scope", 2),), kind="length")
+    recorder.parameter("thickness", "Overall thickness", 0.6, 1.6, kind="length")
 
 
 def _receiver(recorder: Recorder) -> Loft:

@@ -36,7 +36,7 @@ FRONT_GRIP, LAUNCHER, BIPOD = 2, 3, 4
 
 def build() -> ProceduralModel:
     """Model the gun."""
-    recorder = Recorder("gun_submachine", "gun", description="A submachine gun or assault rifle.")
+    recorder = Recorder("gun_submachine", "gun", unit_m=1.0, description="A submachine gun or assault rifle.")
     _declare(recorder)
     receiver = _receiver(recorder)
     handguard, barrel, *before = _front(recorder, receiver)
@@ -85,19 +85,25 @@ def _declare(recorder: Recorder) -> None:
     )
     recorder.parameter("grip_length", "Grip length", 0.7, 1.3, unit="m", base_value=GRIP_LENGTH)
     recorder.parameter("grip_depth", "Grip depth", 0.7, 1.4, unit="m", base_value=0.038)
-    recorder.parameter("grip_rake", "Grip rake (deg)", 0.0, 2.0, base_value=GRIP_RAKE_DEG)
+    recorder.parameter("grip_rake", "Grip rake (deg)", 0.0, 2.0, base_value=GRIP_RAKE_DEG, kind="angle")
     recorder.parameter("magazine_length", "Magazine length or diameter", 0.5, 1.4, unit="m", base_value=0.17)
     recorder.parameter("magazine_width", "Magazine width", 0.6, 1.5, unit="m", base_value=0.055)
     recorder.parameter("magazine_curve", "Magazine curve", 0.0, 2.0, active_when=(when("magazine", 1),))
     recorder.parameter(
-        "magazine_rake", "Magazine rake forward (deg)", -0.5, 2.5, base_value=8.0, active_when=(when("magazine", 1),)
+        "magazine_rake",
+        "Magazine rake forward (deg)",
+        -0.5,
+        2.5,
+        base_value=8.0,
+        active_when=(when("magazine", 1),),
+        kind="angle",
     )
     recorder.parameter("magazine_place", "Place of the magazine", -0.3, 2.0, unit="m", base_value=MAGAZINE_PLACE)
     recorder.limit("magazine_place", maximum=("receiver_length", -1.0, 2.4))
     recorder.parameter("stock_length", "Stock length", 0.4, 1.4, unit="m", base_value=STOCK_LENGTH, active_when=stocked)
     recorder.parameter("stock_height", "Stock height", 0.6, 1.4, unit="m", base_value=STOCK_HEIGHT, active_when=stocked)
     recorder.parameter(
-        "stock_drop", "Drop of the stock (deg)", -1.0, 5.0, base_value=STOCK_DROP_DEG, active_when=stocked
+        "stock_drop", "Drop of the stock (deg)", -1.0, 5.0, base_value=STOCK_DROP_DEG, active_when=stocked, kind="angle"
     )
     recorder.parameter(
         "handle_length",
@@ -110,11 +116,13 @@ def _declare(recorder: Recorder) -> None:
     )
     recorder.parameter("scope_length", "Scope length", 0.5, 1.5, unit="m", base_value=0.22, active_when=scoped)
     recorder.parameter("scope_diameter", "Scope diameter", 0.8, 1.5, unit="m", base_value=0.032, active_when=scoped)
-    recorder.parameter("scope_height", "Scope height", 0.0, 1.6, active_when=scoped)
-    recorder.parameter("below_length", "Length of what is under the handguard", 0.6, 1.4, active_when=below)
-    recorder.parameter("guard_length", "Trigger guard length", 0.75, 1.3)
-    recorder.parameter("guard_height", "Trigger guard height", 0.75, 1.3)
-    recorder.parameter("thickness", "Overall thickness", 0.6, 1.5)
+    recorder.parameter("scope_height", "Scope height", 0.0, 1.6, active_when=scoped, kind="length")
+    recorder.parameter(
+        "below_length", "Length of what is under the handguard", 0.6, 1.4, active_when=below, kind="length"
+    )
+    recorder.parameter("guard_length", "Trigger guard length", 0.75, 1.3, kind="length")
+    recorder.parameter("guard_height", "Trigger guard height", 0.75, 1.3, kind="length")
+    recorder.parameter("thickness", "Overall thickness", 0.6, 1.5, kind="length")
 
 
 def _receiver(recorder: Recorder) -> Loft:

@@ -44,7 +44,9 @@ GEAR = Gear(("skids", "nose wheel", "tail wheel", "none"), 0.75, 0.35, 0.35)
 
 def build() -> ProceduralModel:
     """Model the helicopter."""
-    recorder = Recorder("helicopter", "helicopter", description="A light helicopter with one rotor and a tail boom.")
+    recorder = Recorder(
+        "helicopter", "helicopter", unit_m=1.0, description="A light helicopter with one rotor and a tail boom."
+    )
     body = hull(recorder, HULL)
     hump = engine(recorder, ENGINE, upper(recorder, body, 4))
     upright = fin(recorder, FIN, body)

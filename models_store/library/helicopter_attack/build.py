@@ -72,7 +72,9 @@ GUN = (Section(-0.3, 0.16, 0.16), Section(1.3, 0.12, 0.12))
 
 def build() -> ProceduralModel:
     """Model the helicopter."""
-    recorder = Recorder("helicopter_attack", "helicopter", description="A slim attack helicopter with stub wings.")
+    recorder = Recorder(
+        "helicopter_attack", "helicopter", unit_m=1.0, description="A slim attack helicopter with stub wings."
+    )
     body = hull(recorder, HULL)
     hump = engine(recorder, HUMP, upper(recorder, body, 4))
     _canopy(recorder, body)
@@ -95,7 +97,7 @@ def _canopy(recorder: Recorder, body: Loft) -> None:
     there = (when("canopy", 1),)
     canopy = loft(recorder, "x", CANOPY, anchors=[upper(recorder, body, CANOPY_PLACE)])
     for what, axis, low, high in (("length", "u", 0.6, 1.4), ("height", "z", 0.4, 1.7)):
-        recorder.parameter(f"canopy_{what}", f"Canopy {what}", low, high, active_when=there)
+        recorder.parameter(f"canopy_{what}", f"Canopy {what}", low, high, kind="length", active_when=there)
         recorder.scale(canopy.body(), 1.0, axis, size=f"canopy_{what}")
     recorder.part("canopy", whole(canopy), present_when=there)
 
@@ -112,13 +114,15 @@ def _wings(recorder: Recorder, body: Loft) -> None:
     """Stub wings, with pods under their middles and at their tips."""
     recorder.choice("weapons", "Stub wings", ("with two pods a side", "with one pod a side", "bare", "none"))
     winged, armed = (when("weapons", 1, 3),), (when("weapons", 1, 2),)
-    recorder.parameter("wing_span", "Stub wing span", 0.5, 1.6, base_value=WING_SPAN, active_when=winged)
-    recorder.parameter("wing_chord", "Stub wing chord", 0.6, 1.6, base_value=WING_CHORD, active_when=winged)
-    recorder.parameter("wing_droop", "Stub wing droop (deg)", -0.8, 2.4, base_value=WING_DROOP_DEG, active_when=winged)
+    recorder.parameter("wing_span", "Stub wing span", 0.5, 1.6, base_value=WING_SPAN, active_when=winged, unit="m")
+    recorder.parameter("wing_chord", "Stub wing chord", 0.6, 1.6, base_value=WING_CHORD, active_when=winged, unit="m")
+    recorder.parameter(
+        "wing_droop", "Stub wing droop (deg)", -0.8, 2.4, base_value=WING_DROOP_DEG, active_when=winged, kind="angle"
+    )
     wings = stub_wings(recorder, flank(recorder, body, 4), WING_SPAN, WING_CHORD, WING_DROOP_DEG, WING_SUNK)
     recorder.part("stub wings", whole(wings), present_when=winged)
-    recorder.parameter("pod_length", "Pod length", 0.5, 1.6, active_when=armed)
-    recorder.parameter("pod_size", "Pod thickness", 0.5, 1.7, active_when=armed)
+    recorder.parameter("pod_length", "Pod length", 0.5, 1.6, active_when=armed, kind="length")
+    recorder.parameter("pod_size", "Pod thickness", 0.5, 1.7, active_when=armed, kind="length")
     for station, there in ((2, armed), (1, (when("weapons", 1),))):
         anchors = [Target(wings.rings[station][0], "world"), Target(wings.rings[station][1], "world", (Mirror("y"),))]
         made = loft(recorder, "x", POD, sides=6, offset=(0.1, 0.0, -POD_BELOW), anchors=anchors)
@@ -132,7 +136,7 @@ def _gun(recorder: Recorder, body: Loft) -> None:
     recorder.switch("gun", "Gun under the nose")
     there = (when("gun", 1),)
     gun = loft(recorder, "x", GUN, sides=6, anchors=[lower(recorder, body, 7)])
-    recorder.parameter("gun_length", "Gun length", 0.6, 1.8, base_value=GUN[1].at, active_when=there)
+    recorder.parameter("gun_length", "Gun length", 0.6, 1.8, base_value=GUN[1].at, active_when=there, unit="m")
     recorder.scale(gun.body(hinge=0), 1.0, "u", size="gun_length")
     recorder.part("gun", whole(gun), present_when=there)
 

@@ -40,7 +40,7 @@ GEAR = Gear(("skids", "nose wheel", "tail wheel", "none"), 0.55, 0.2, 0.3, 2.8, 
 
 def build() -> ProceduralModel:
     """Model the helicopter."""
-    recorder = Recorder("helicopter_blocky", "helicopter", description="A helicopter of few flat faces.")
+    recorder = Recorder("helicopter_blocky", "helicopter", unit_m=1.0, description="A helicopter of few flat faces.")
     body = hull(recorder, HULL)
     upright = fin(recorder, FIN, body)
     tailplane(recorder, TAILPLANE, Target(body.rings[1][0], "world"), Target(upright.rings[2][0], "world"))

@@ -37,7 +37,9 @@ GEAR = Gear(("skids", "nose wheel", "none"), 0.7, 0.4, 0.4, 2.7, 0.11, 0.42, 0.5
 
 def build() -> ProceduralModel:
     """Model the helicopter."""
-    recorder = Recorder("helicopter_bubble", "helicopter", description="An egg-shaped cabin with a thin tail boom.")
+    recorder = Recorder(
+        "helicopter_bubble", "helicopter", unit_m=1.0, description="An egg-shaped cabin with a thin tail boom."
+    )
     cabin = _cabin(recorder)
     boom = _boom(recorder, cabin)
     upright = fin(recorder, FIN, boom)
@@ -54,11 +56,11 @@ def _cabin(recorder: Recorder) -> Loft:
     """An egg; its rear may be drawn up and out towards the boom, its nose may sink."""
     cabin = loft(recorder, "x", bulb(CABIN_LENGTH, CABIN_WIDTH, CABIN_HEIGHT, start=-1.8, count=7, peak=0.95))
     for what, axis in (("length", "u"), ("width", "v"), ("height", "z")):
-        recorder.parameter(f"cabin_{what}", f"Cabin {what}", 0.65, 1.4)
+        recorder.parameter(f"cabin_{what}", f"Cabin {what}", 0.65, 1.4, kind="length")
         recorder.scale(cabin.body(hinge=3), 1.0, axis, size=f"cabin_{what}")
-    recorder.parameter("cabin_rear", "Rear of the cabin drawn out", 0.0, 2.2, base_value=0.4)
+    recorder.parameter("cabin_rear", "Rear of the cabin drawn out", 0.0, 2.2, base_value=0.4, unit="m")
     move(recorder, cabin.sections(0, 1), (-0.4, 0.0, 0.15), length="cabin_rear")
-    recorder.parameter("nose_drop", "Nose lower than the cabin", -1.0, 2.2, base_value=0.15)
+    recorder.parameter("nose_drop", "Nose lower than the cabin", -1.0, 2.2, base_value=0.15, unit="m")
     for number, share in ((5, 0.5), (6, 1.0)):
         move(recorder, cabin.sections(number), (0.0, 0.0, -0.15 * share), length="nose_drop")
     recorder.parameter("nose_point", "Pointed or blunt nose", 0.5, 1.7)
@@ -73,7 +75,7 @@ def _boom(recorder: Recorder, cabin: Loft) -> Loft:
     sides = (anchor, replace(anchor, image=(Mirror("y"),)))
     high, low, brace = (_rods(recorder, heights, sides) for heights in ((1, 1), (-1, -1), (1, -1, 1, -1, 1, -1, 1)))
     recorder.choice("boom", "Tail boom", ("tube", "lattice"))
-    recorder.parameter("tail_length", "Tail boom length", 0.5, 1.3, base_value=-TUBE[0].at)
+    recorder.parameter("tail_length", "Tail boom length", 0.5, 1.3, base_value=-TUBE[0].at, unit="m")
     recorder.scale(
         [target for body in (tube, high, low, brace) for target in body.body(hinge=len(body.rings) - 1)],
         1.0,
@@ -81,9 +83,11 @@ def _boom(recorder: Recorder, cabin: Loft) -> Loft:
         size="tail_length",
     )
     tubular = (when("boom", 1),)
-    recorder.parameter("tail_thickness", "Tail boom thickness", 0.4, 2.0, base_value=TUBE[1].width, active_when=tubular)
+    recorder.parameter(
+        "tail_thickness", "Tail boom thickness", 0.4, 2.0, base_value=TUBE[1].width, active_when=tubular, unit="m"
+    )
     recorder.scale(tube.sections(0, 1, 2, 3), 1.0, "vz", size="tail_thickness")
-    recorder.parameter("tail_rise", "Tip of the tail boom raised", -0.8, 2.2, base_value=BOOM_RISE)
+    recorder.parameter("tail_rise", "Tip of the tail boom raised", -0.8, 2.2, base_value=BOOM_RISE, unit="m")
     for places, bodies in (([s.at for s in TUBE], (tube,)), (_ENDS, (high, low)), (STATIONS, (brace,))):
         for number, place in enumerate(places[:-1]):
             share = (STATIONS[-1] - place) / (STATIONS[-1] - STATIONS[0])

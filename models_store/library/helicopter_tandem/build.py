@@ -42,7 +42,9 @@ GEAR = Gear(("nose wheel", "tail wheel", "none"), 0.6, 0.3, 0.5, wheel_diameter=
 
 def build() -> ProceduralModel:
     """Model the helicopter."""
-    recorder = Recorder("helicopter_tandem", "helicopter", description="A helicopter with two rotors, fore and aft.")
+    recorder = Recorder(
+        "helicopter_tandem", "helicopter", unit_m=1.0, description="A helicopter with two rotors, fore and aft."
+    )
     body = _hull(recorder)
     front = loft(recorder, "z", FRONT_PYLON, anchors=[upper(recorder, body, 4)])
     rear = loft(recorder, "z", REAR_PYLON, anchors=[upper(recorder, body, 1)])
@@ -62,13 +64,13 @@ def _hull(recorder: Recorder) -> Loft:
     """A long hull of which rear and nose can be raised or lowered."""
     body = loft(recorder, "x", HULL)
     for what, axis, low, high in (("length", "u", 0.7, 1.3), ("width", "v", 0.6, 1.35), ("height", "z", 0.6, 1.35)):
-        recorder.parameter(f"cabin_{what}", f"Cabin {what}", low, high)
+        recorder.parameter(f"cabin_{what}", f"Cabin {what}", low, high, kind="length")
         recorder.scale(body.body(hinge=3), 1.0, axis, size=f"cabin_{what}")
     recorder.parameter("nose_point", "Pointed or blunt nose", 0.5, 1.7)
     recorder.scale(body.sections(6), 1.0, "vz", size="nose_point")
     recorder.parameter("tail_point", "Pointed or blunt rear", 0.4, 1.6)
     recorder.scale(body.sections(0), 1.0, "vz", size="tail_point")
-    recorder.parameter("hull_bend", "Both ends of the hull raised", -0.5, 2.4, base_value=HULL_BEND)
+    recorder.parameter("hull_bend", "Both ends of the hull raised", -0.5, 2.4, base_value=HULL_BEND, unit="m")
     move(recorder, body.sections(0, 1, 5, 6), (0.0, 0.0, HULL_BEND), length="hull_bend")
     move(recorder, body.sections(0, 1, 5, 6), (0.0, 0.0, -HULL_BEND))
     return body
@@ -77,13 +79,17 @@ def _hull(recorder: Recorder) -> Loft:
 def _pylons(recorder: Recorder, front: Loft, rear: Loft) -> None:
     """What bears the rotors; the rear one is taller and leans backwards."""
     for pylon, name, label in ((front, "front_pylon", "Front pylon"), (rear, "rear_pylon", "Rear pylon")):
-        recorder.parameter(f"{name}_height", f"{label} height", 0.4, 1.7, base_value=2.3 if pylon is rear else 0.9)
+        recorder.parameter(
+            f"{name}_height", f"{label} height", 0.4, 1.7, base_value=2.3 if pylon is rear else 0.9, unit="m"
+        )
         recorder.scale(pylon.beyond(1, hinge=0), 1.0, "z", size=f"{name}_height")
-        recorder.parameter(f"{name}_length", f"{label} length", 0.6, 1.4)
+        recorder.parameter(f"{name}_length", f"{label} length", 0.6, 1.4, kind="length")
         recorder.scale(pylon.body(hinge=0), 1.0, "u", size=f"{name}_length")
-    recorder.parameter("pylon_width", "Pylon width", 0.5, 1.5)
+    recorder.parameter("pylon_width", "Pylon width", 0.5, 1.5, kind="length")
     recorder.scale([*front.body(hinge=0), *rear.body(hinge=0)], 1.0, "v", size="pylon_width")
-    recorder.parameter("rear_pylon_lean", "Rear pylon leaning backwards", -0.6, 2.0, base_value=REAR_PYLON_LEAN)
+    recorder.parameter(
+        "rear_pylon_lean", "Rear pylon leaning backwards", -0.6, 2.0, base_value=REAR_PYLON_LEAN, unit="m"
+    )
     for number in (1, 2, 3):
         by = (-REAR_PYLON_LEAN * number / 3, 0.0, 0.0)
         move(recorder, rear.sections(number), by, length="rear_pylon_lean")

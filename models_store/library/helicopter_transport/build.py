@@ -60,7 +60,9 @@ GEAR = Gear(("nose wheel", "tail wheel", "none"), 0.7, 0.35, 0.45, wheel_diamete
 
 def build() -> ProceduralModel:
     """Model the helicopter."""
-    recorder = Recorder("helicopter_transport", "helicopter", description="A transport helicopter on wheels.")
+    recorder = Recorder(
+        "helicopter_transport", "helicopter", unit_m=1.0, description="A transport helicopter on wheels."
+    )
     body = hull(recorder, HULL)
     hump = engine(recorder, ENGINE, upper(recorder, body, 4))
     recorder.switch("sponsons", "Sponsons at the sides")

@@ -21,7 +21,9 @@ SKIRT = 0.5
 
 def model() -> AnnotatingRecorder:
     """Model the figure."""
-    r = AnnotatingRecorder("humanoid", "humanoid", description="A standing human figure, arms out or hanging.")
+    r = AnnotatingRecorder(
+        "humanoid", "humanoid", unit_m=1.0, description="A standing human figure, arms out or hanging."
+    )
     r.parameter("trunk_length", "Trunk length", 0.7, 1.5, unit="m", base_value=WAIST + CHEST)
     r.parameter("trunk_depth", "Trunk depth (of the pelvis's)", 0.65, 1.7, base_value=1.0)
     r.parameter("hip_width", "Hip width (of the base figure's)", 0.75, 1.5, base_value=1.0)

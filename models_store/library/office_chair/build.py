@@ -35,7 +35,9 @@ HEAD_OVERLAP = 0.03
 
 def build() -> ProceduralModel:
     """Model the chair."""
-    r = Recorder("office_chair", "office_chair", description="An office chair with a high back that meets the seat.")
+    r = Recorder(
+        "office_chair", "office_chair", unit_m=1.0, description="An office chair with a high back that meets the seat."
+    )
     declare_base(r, column=(0.45, 1.3))
     _declare(r)
     declare_arms(r)

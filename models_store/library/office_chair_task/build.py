@@ -39,7 +39,12 @@ ROD_X = BAR_X + 0.012
 
 def build() -> ProceduralModel:
     """Model the chair."""
-    r = Recorder("office_chair_task", "office_chair", description="A task chair or swivel stool with a separate back.")
+    r = Recorder(
+        "office_chair_task",
+        "office_chair",
+        unit_m=1.0,
+        description="A task chair or swivel stool with a separate back.",
+    )
     declare_base(r, column=(0.5, 2.4))
     _declare(r)
     declare_arms(r)

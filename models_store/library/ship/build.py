@@ -22,7 +22,9 @@ KEEL = 3.0
 
 def model() -> AnnotatingRecorder:
     """Model the ship."""
-    r = AnnotatingRecorder("ship", "ship", description="A ship: freighter, liner, warship, sailing ship, yacht.")
+    r = AnnotatingRecorder(
+        "ship", "ship", unit_m=1.0, description="A ship: freighter, liner, warship, sailing ship, yacht."
+    )
     r.parameter("middle_length", "Length amidships", 0.15, 2.5, unit="m", base_value=MIDDLE)
     r.parameter("end_length", "Length of the fore and the after body", 0.4, 1.7, unit="m", base_value=FORE)
     r.parameter("bow_length", "Bow length", 0.4, 1.7, unit="m", base_value=BOW)

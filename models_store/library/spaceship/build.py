@@ -23,7 +23,9 @@ FIN = 1.6
 
 def model() -> AnnotatingRecorder:
     """Model the spaceship."""
-    r = AnnotatingRecorder("spaceship", "spaceship", description="A spaceship: saucer, cruiser, shuttle or fighter.")
+    r = AnnotatingRecorder(
+        "spaceship", "spaceship", unit_m=1.0, description="A spaceship: saucer, cruiser, shuttle or fighter."
+    )
     r.parameter("hull_length", "Hull length", 0.45, 1.9, unit="m", base_value=LENGTH)
     r.parameter("hull_width", "Hull width", 0.4, 1.7, unit="m", base_value=WIDTH)
     r.parameter("rim_height", "Height of the hull's rim", 0.3, 1.8, unit="m", base_value=RIM)

@@ -39,7 +39,9 @@ FANGS = Feelers("fang", "Jaw", 0.36, 0.16, heading_deg=10.0, raise_deg=-25.0, le
 
 def build() -> ProceduralModel:
     """Model the spider."""
-    recorder = Recorder("spider", "spider", description="A spider with a bulb of an abdomen and jointed legs.")
+    recorder = Recorder(
+        "spider", "spider", unit_m=0.01, description="A spider with a bulb of an abdomen and jointed legs."
+    )
     forebody = loft(recorder, "x", FOREBODY)
     resize(recorder, forebody, "forebody", "Forebody", ((0.6, 1.5), (0.7, 1.4), (0.6, 1.6)), hinge=2)
     _abdomen(recorder, forebody)

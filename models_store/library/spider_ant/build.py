@@ -41,7 +41,9 @@ JAWS = Feelers("jaw", "Jaw", 0.38, 0.13, heading_deg=22.0, curve_deg=55.0, flatn
 
 def build() -> ProceduralModel:
     """Model the ant."""
-    recorder = Recorder("spider_ant", "spider", description="An ant: three parts on thin waists, six legs, antennae.")
+    recorder = Recorder(
+        "spider_ant", "spider", unit_m=0.01, description="An ant: three parts on thin waists, six legs, antennae."
+    )
     middle = loft(recorder, "x", MIDDLE)
     resize(recorder, middle, "middle", "Middle", ((0.6, 1.5), (0.65, 1.5), (0.6, 1.6)), hinge=2)
     _abdomen(recorder, middle)
@@ -56,8 +58,8 @@ def build() -> ProceduralModel:
 def _abdomen(recorder: Recorder, middle: Loft) -> None:
     """A bulb behind a waist; the waist's length carries it away from the middle."""
     waist = loft(recorder, "x", WAIST, sides=6, anchors=[hub(middle, 0)])
-    recorder.parameter("waist_length", "Waist length", 0.3, 2.5, base_value=-WAIST[0].at)
-    recorder.parameter("waist_thickness", "Waist thickness", 0.5, 2.2, base_value=WAIST[1].width)
+    recorder.parameter("waist_length", "Waist length", 0.3, 2.5, base_value=-WAIST[0].at, unit="cm")
+    recorder.parameter("waist_thickness", "Waist thickness", 0.5, 2.2, base_value=WAIST[1].width, unit="cm")
     recorder.scale(waist.body(hinge=3), 1.0, "u", size="waist_length")
     recorder.scale(waist.body(hinge=3), 1.0, "vz", size="waist_thickness")
     sections = bulb(
@@ -77,7 +79,7 @@ def _head(recorder: Recorder, middle: Loft) -> Loft:
     head = loft(recorder, "x", sections, anchors=[hub(middle, 5)])
     resize(recorder, head, "head", "Head", ((0.6, 1.6), (0.6, 1.7), (0.6, 1.8)), hinge=0)
     lift(recorder, head, "head_lift", "Head raised over the middle", 0.07)
-    recorder.parameter("head_nod", "Head bent down (deg)", -0.8, 2.2, base_value=20.0)
+    recorder.parameter("head_nod", "Head bent down (deg)", -0.8, 2.2, base_value=20.0, kind="angle")
     recorder.rotate(head.body(hinge=0), 20.0, "v", angle="head_nod")
     return head
 

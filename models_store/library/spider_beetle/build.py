@@ -48,7 +48,9 @@ JAWS = Feelers("jaw", "Jaw", 0.42, 0.12, heading_deg=28.0, curve_deg=60.0, flatn
 
 def build() -> ProceduralModel:
     """Model the beetle."""
-    recorder = Recorder("spider_beetle", "spider", description="A beetle: an oval hull, a shield, a head, six legs.")
+    recorder = Recorder(
+        "spider_beetle", "spider", unit_m=0.01, description="A beetle: an oval hull, a shield, a head, six legs."
+    )
     hull = loft(recorder, "x", HULL)
     resize(recorder, hull, "hull", "Hull", ((0.6, 1.6), (0.55, 1.35), (0.45, 1.7)), hinge=5)
     recorder.parameter("belly_rise", "Flatness of the belly", -0.5, 1.7, base_value=BELLY_RISE)
@@ -83,7 +85,7 @@ def _horn(recorder: Recorder, head: Loft) -> None:
     recorder.switch("horn", "Horn")
     there = (when("horn", 1),)
     horn = loft(recorder, "x", HORN, sides=6, anchors=[hub(head, 3)])
-    recorder.parameter("horn_length", "Horn length", 0.6, 2.0, base_value=HORN[-1].at, active_when=there)
+    recorder.parameter("horn_length", "Horn length", 0.6, 2.0, base_value=HORN[-1].at, active_when=there, unit="cm")
     recorder.scale(horn.body(hinge=0), 1.0, "u", size="horn_length")
     recorder.parameter("horn_curve", "Horn curve upwards", -0.4, 1.8, active_when=there)
     for joint in (0, 1, 2):

@@ -31,7 +31,9 @@ HEAD = (Section(-0.12, 0.40, 0.36), Section(0.16, 0.52, 0.46), Section(0.55, 0.3
 
 def build() -> ProceduralModel:
     """Model the spider."""
-    recorder = Recorder("spider_blocky", "spider", description="A spider of few flat faces, with eight legs.")
+    recorder = Recorder(
+        "spider_blocky", "spider", unit_m=0.01, description="A spider of few flat faces, with eight legs."
+    )
     forebody = beam(recorder, "+x", FOREBODY, crease="all")
     resize(recorder, forebody, "forebody", "Forebody", ((0.5, 2.0), (0.6, 1.7), (0.5, 1.7)), hinge=2)
     _abdomen(recorder, forebody)
@@ -64,11 +66,11 @@ def _head(recorder: Recorder, forebody: Loft) -> None:
     there = (when("head", 1),)
     head = beam(recorder, "+x", HEAD, crease="all", anchors=[hub(forebody, 5)])
     for what, axes, low, high in (("length", "u", 0.6, 2.0), ("size", "vz", 0.7, 1.5)):
-        recorder.parameter(f"head_{what}", f"Head {what}", low, high, active_when=there)
+        recorder.parameter(f"head_{what}", f"Head {what}", low, high, kind="length", active_when=there)
         recorder.scale(head.body(hinge=0), 1.0, axes, size=f"head_{what}")
     recorder.parameter("head_point", "Blunt or pointed front of the head", 0.3, 1.6, active_when=there)
     recorder.scale(head.sections(2), 1.0, "vz", size="head_point")
-    recorder.parameter("head_nod", "Head bent down (deg)", -1.2, 2.0, base_value=14.0, active_when=there)
+    recorder.parameter("head_nod", "Head bent down (deg)", -1.2, 2.0, base_value=14.0, active_when=there, kind="angle")
     recorder.rotate(head.body(hinge=0), 14.0, "v", angle="head_nod")
     recorder.part("head", components(head), present_when=there)
 

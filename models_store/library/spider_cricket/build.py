@@ -59,7 +59,9 @@ BRISTLES = Feelers("bristle", "Tail bristle", 0.45, 0.07, heading_deg=158.0, spr
 
 def build() -> ProceduralModel:
     """Model the cricket."""
-    recorder = Recorder("spider_cricket", "spider", description="A cricket: six legs, the hind ones large.")
+    recorder = Recorder(
+        "spider_cricket", "spider", unit_m=0.01, description="A cricket: six legs, the hind ones large."
+    )
     middle = loft(recorder, "x", MIDDLE)
     resize(recorder, middle, "middle", "Middle", ((0.6, 1.5), (0.6, 1.4), (0.6, 1.5)), hinge=2)
     abdomen = loft(recorder, "x", ABDOMEN, anchors=[hub(middle, 0)])
@@ -83,7 +85,7 @@ def _head(recorder: Recorder, middle: Loft) -> Loft:
     sections = bulb(HEAD_LENGTH, HEAD_WIDTH, HEAD_HEIGHT, start=-0.10, count=5)
     head = loft(recorder, "x", sections, anchors=[hub(middle, 4)])
     resize(recorder, head, "head", "Head", ((0.6, 1.6), (0.6, 1.6), (0.6, 1.5)), hinge=0)
-    recorder.parameter("head_nod", "Head bent down (deg)", -0.6, 2.2, base_value=22.0)
+    recorder.parameter("head_nod", "Head bent down (deg)", -0.6, 2.2, base_value=22.0, kind="angle")
     recorder.rotate(head.body(hinge=0), 22.0, "v", angle="head_nod")
     return head
 

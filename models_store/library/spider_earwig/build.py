@@ -51,7 +51,9 @@ BRISTLES = Feelers(
 
 def build() -> ProceduralModel:
     """Model the insect."""
-    recorder = Recorder("spider_earwig", "spider", description="A long flat insect with six legs and tail bristles.")
+    recorder = Recorder(
+        "spider_earwig", "spider", unit_m=0.01, description="A long flat insect with six legs and tail bristles."
+    )
     middle = loft(recorder, "x", MIDDLE)
     resize(recorder, middle, "middle", "Middle", ((0.6, 1.5), (0.6, 1.3), (0.6, 1.6)), hinge=2)
     abdomen = loft(recorder, "x", ABDOMEN, anchors=[hub(middle, 0)])

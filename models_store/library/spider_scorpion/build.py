@@ -26,7 +26,9 @@ FINGER_OPEN_DEG = 14.0
 
 def build() -> ProceduralModel:
     """Model the scorpion."""
-    recorder = Recorder("spider_scorpion", "spider", description="A scorpion with its tail raised and two pincers.")
+    recorder = Recorder(
+        "spider_scorpion", "spider", unit_m=0.01, description="A scorpion with its tail raised and two pincers."
+    )
     body = loft(recorder, "x", bulb(BODY_LENGTH, BODY_WIDTH, BODY_HEIGHT, start=-1.2, count=8, peak=0.9))
     resize(recorder, body, "body", "Body", ((0.6, 1.5), (0.65, 1.5), (0.6, 1.8)), hinge=4)
     _tail(recorder, body)
@@ -47,11 +49,13 @@ def _tail(recorder: Recorder, body: Loft) -> None:
     sections += [Section(end + at, wide, wide) for at, wide in STING]
     tail = beam(recorder, "-x", sections, sides=6, anchors=Target(body.rings[0][0], "world"))
     last = len(sections)
-    recorder.parameter("tail_length", "Tail length", 0.5, 1.5, base_value=end)
+    recorder.parameter("tail_length", "Tail length", 0.5, 1.5, base_value=end, unit="cm")
     recorder.scale(tail.body(hinge=0), 1.0, "u", size="tail_length")
-    recorder.parameter("tail_thickness", "Tail thickness", 0.5, 1.8, base_value=TAIL_WIDTH)
+    recorder.parameter("tail_thickness", "Tail thickness", 0.5, 1.8, base_value=TAIL_WIDTH, unit="cm")
     recorder.scale(tail.sections(*range(last)), 1.0, "vz", size="tail_thickness")
-    recorder.parameter("tail_arch", "Bend of the tail at each bead (deg)", 0.1, 1.35, base_value=TAIL_ARCH_DEG)
+    recorder.parameter(
+        "tail_arch", "Bend of the tail at each bead (deg)", 0.1, 1.35, base_value=TAIL_ARCH_DEG, kind="angle"
+    )
     for joint in range(1, 2 * TAIL_BEADS, 2):
         recorder.rotate(tail.beyond(joint, hinge=joint), TAIL_ARCH_DEG / 2, "v", angle="tail_arch")
         recorder.rotate(tail.beyond(joint + 1, hinge=joint), TAIL_ARCH_DEG / 2, "v", angle="tail_arch")
@@ -62,19 +66,21 @@ def _arms(recorder: Recorder, body: Loft) -> None:
     sections = [Section(at * ARM_LENGTH, wide, wide) for at, wide in ARM]
     shoulders = flanks(recorder, body, 6)
     arms = loft(recorder, "x", sections, sides=6, offset=(0.0, -0.14, 0.0), anchors=shoulders)
-    recorder.parameter("arm_length", "Arm length", 0.6, 1.7, base_value=ARM_LENGTH)
+    recorder.parameter("arm_length", "Arm length", 0.6, 1.7, base_value=ARM_LENGTH, unit="cm")
     recorder.scale(arms.body(hinge=0), 1.0, "u", size="arm_length")
     ends = [Target(ring, "world", image) for ring, image in zip(arms.rings[3], arms.images, strict=True)]
     sections = [Section(at, wide, wide * 0.8) for at, wide in FINGER]
     fingers = [loft(recorder, "x", sections, sides=6, anchors=ends) for _ in range(2)]
-    recorder.parameter("pincer_size", "Pincer size", 0.5, 1.8, base_value=FINGER[-1][0])
+    recorder.parameter("pincer_size", "Pincer size", 0.5, 1.8, base_value=FINGER[-1][0], unit="cm")
     recorder.scale([t for finger in fingers for t in finger.body(hinge=0)], 1.0, size="pincer_size")
-    recorder.parameter("pincer_open", "Opening of the pincers (deg)", 0.3, 2.0, base_value=2 * FINGER_OPEN_DEG)
+    recorder.parameter(
+        "pincer_open", "Opening of the pincers (deg)", 0.3, 2.0, base_value=2 * FINGER_OPEN_DEG, kind="angle"
+    )
     for finger, way in zip(fingers, (1.0, -1.0), strict=True):
         recorder.rotate(finger.body(hinge=0), way * FINGER_OPEN_DEG, "z", angle="pincer_open")
-    recorder.parameter("elbow_bend", "Bend of the elbows (deg)", 0.2, 2.0, base_value=ELBOW_DEG)
+    recorder.parameter("elbow_bend", "Bend of the elbows (deg)", 0.2, 2.0, base_value=ELBOW_DEG, kind="angle")
     recorder.rotate(_limbs(arms, fingers, 2), -ELBOW_DEG, "z", angle="elbow_bend")
-    recorder.parameter("arm_heading", "Arms turned outwards (deg)", 0.4, 1.4, base_value=ARM_HEADING_DEG)
+    recorder.parameter("arm_heading", "Arms turned outwards (deg)", 0.4, 1.4, base_value=ARM_HEADING_DEG, kind="angle")
     recorder.rotate(_limbs(arms, fingers, 0), ARM_HEADING_DEG, "z", angle="arm_heading")
 
 

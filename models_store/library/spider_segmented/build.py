@@ -35,7 +35,9 @@ JAWS = Feelers("jaw", "Jaw", 0.32, 0.13, heading_deg=22.0, curve_deg=50.0, flatn
 
 def build() -> ProceduralModel:
     """Model the insect."""
-    recorder = Recorder("spider_segmented", "spider", description="An insect with a ringed body and six legs.")
+    recorder = Recorder(
+        "spider_segmented", "spider", unit_m=0.01, description="An insect with a ringed body and six legs."
+    )
     recorder.parameter("grooves", "Width of the body in its grooves", 0.85, 1.2)
     middle = _ringed(recorder, MIDDLE_LENGTH, MIDDLE_WIDTH, MIDDLE_HEIGHT, MIDDLE_RINGS, -MIDDLE_LENGTH / 2, ())
     resize(recorder, middle, "middle", "Middle", ((0.6, 1.6), (0.65, 1.6), (0.6, 1.7)), hinge=3)
@@ -89,7 +91,7 @@ def _head(recorder: Recorder, middle: Loft) -> Loft:
     head = loft(recorder, "x", sections, anchors=[hub(middle, 2 * MIDDLE_RINGS)])
     resize(recorder, head, "head", "Head", ((0.6, 1.7), (0.6, 1.6), (0.6, 1.7)), hinge=0)
     lift(recorder, head, "head_lift", "Head higher or lower", 0.08)
-    recorder.parameter("head_nod", "Head bent down (deg)", -0.8, 2.0, base_value=16.0)
+    recorder.parameter("head_nod", "Head bent down (deg)", -0.8, 2.0, base_value=16.0, kind="angle")
     recorder.rotate(head.body(hinge=0), 16.0, "v", angle="head_nod")
     return head
 

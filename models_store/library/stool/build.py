@@ -21,7 +21,9 @@ SPLIT = DROP / (DROP + REST)
 
 def model() -> AnnotatingRecorder:
     """Model the stool."""
-    r = AnnotatingRecorder("stool", "stool", description="A stool without a back: legs or a pedestal, perhaps a ring.")
+    r = AnnotatingRecorder(
+        "stool", "stool", unit_m=1.0, description="A stool without a back: legs or a pedestal, perhaps a ring."
+    )
     r.choice("seat", "Seat", ("round", "square"))
     r.parameter("seat_size", "Seat width", 0.7, 1.7, unit="m", base_value=SEAT)
     r.parameter("seat_thickness", "Seat thickness", 0.4, 3.2, unit="m", base_value=THICKNESS)
@@ -33,7 +35,9 @@ def model() -> AnnotatingRecorder:
     r.parameter("leg_thickness", "Leg thickness", 0.5, 1.9, unit="m", base_value=LEG_THICKNESS, active_when=legs)
     r.parameter("leg_taper", "Foot thickness (of the leg's)", 0.5, 1.5, base_value=LEG_TAPER, active_when=legs)
     r.parameter("leg_splay", "Leg splay", -0.1, 2.0, unit="m", base_value=LEG_SPLAY, active_when=legs)
-    r.parameter("leg_spread", "Distance of the legs at the seat", 0.5, 1.1, base_value=2 * LEG_INSET, active_when=legs)
+    r.parameter(
+        "leg_spread", "Distance of the legs at the seat", 0.5, 1.1, unit="m", base_value=2 * LEG_INSET, active_when=legs
+    )
     r.limit("leg_spread", maximum=("seat_size", -0.05, 1.15))
     r.switch("ring", "Foot ring", active_when=legs)
     pedestal = [when("support", 3)]

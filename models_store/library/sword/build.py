@@ -26,7 +26,7 @@ BAR_CONTROL = 12 / 11  # a bar of square section ends this much thinner than its
 
 def build() -> ProceduralModel:
     """Model the sword."""
-    recorder = Recorder("sword", "sword", description="A straight sword with cross guard, grip and pommel.")
+    recorder = Recorder("sword", "sword", unit_m=1.0, description="A straight sword with cross guard, grip and pommel.")
     recorder.parameter("blade_length", "Blade length (without tip)", 0.35, 1.5, unit="m", base_value=BLADE_LENGTH)
     recorder.parameter("blade_width", "Blade width", 0.4, 2.2, unit="m", base_value=BLADE_WIDTH)
     recorder.parameter("blade_thickness", "Blade thickness", 0.25, 2.0, unit="m", base_value=BLADE_THICKNESS)

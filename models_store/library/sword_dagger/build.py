@@ -22,7 +22,9 @@ RIBS, RIB = 7, 1.15  # of the grip: how many, and their width relative to the gr
 
 def build() -> ProceduralModel:
     """Model the dagger."""
-    recorder = Recorder("sword_dagger", "sword", description="A dagger, short sword or knife, with or without guard.")
+    recorder = Recorder(
+        "sword_dagger", "sword", unit_m=1.0, description="A dagger, short sword or knife, with or without guard."
+    )
     recorder.parameter("blade_length", "Blade length (without tip)", 0.6, 1.8, unit="m", base_value=BLADE_LENGTH)
     recorder.parameter("blade_width", "Blade width", 0.5, 1.6, unit="m", base_value=BLADE_WIDTH)
     recorder.parameter("blade_thickness", "Blade thickness", 0.25, 1.8, unit="m", base_value=BLADE_THICKNESS)

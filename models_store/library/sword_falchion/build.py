@@ -23,7 +23,9 @@ KNOB = (0.7, 1.04, 0.95, 0.5)
 
 def build() -> ProceduralModel:
     """Model the falchion."""
-    recorder = Recorder("sword_falchion", "sword", description="A broad sword with one edge: falchion or machete.")
+    recorder = Recorder(
+        "sword_falchion", "sword", unit_m=1.0, description="A broad sword with one edge: falchion or machete."
+    )
     recorder.parameter("blade_length", "Blade length (without tip)", 0.55, 1.5, unit="m", base_value=BLADE_LENGTH)
     recorder.parameter("blade_width", "Blade width", 0.6, 1.8, unit="m", base_value=BLADE_WIDTH)
     recorder.parameter("blade_thickness", "Blade thickness", 0.3, 1.8, unit="m", base_value=BLADE_THICKNESS)

@@ -22,7 +22,9 @@ KNOB = (0.6, 1.04, 1.0, 0.5)
 
 def build() -> ProceduralModel:
     """Model the sword."""
-    recorder = Recorder("sword_greatsword", "sword", description="A two-handed sword with a long grip and cross bar.")
+    recorder = Recorder(
+        "sword_greatsword", "sword", unit_m=1.0, description="A two-handed sword with a long grip and cross bar."
+    )
     recorder.parameter("blade_length", "Blade length (without tip)", 0.6, 1.3, unit="m", base_value=BLADE_LENGTH)
     recorder.parameter("blade_width", "Blade width", 0.55, 2.0, unit="m", base_value=BLADE_WIDTH)
     recorder.parameter("blade_thickness", "Blade thickness", 0.25, 2.6, unit="m", base_value=BLADE_THICKNESS)

@@ -21,7 +21,9 @@ KNOB = (1.0, 0.8)
 
 def build() -> ProceduralModel:
     """Model the katana."""
-    recorder = Recorder("sword_katana", "sword", description="A katana or another curved sword with a disc as guard.")
+    recorder = Recorder(
+        "sword_katana", "sword", unit_m=1.0, description="A katana or another curved sword with a disc as guard."
+    )
     recorder.parameter("blade_length", "Blade length (without tip)", 0.45, 1.35, unit="m", base_value=BLADE_LENGTH)
     recorder.parameter("blade_width", "Blade width", 0.5, 1.9, unit="m", base_value=BLADE_WIDTH)
     recorder.parameter("blade_thickness", "Blade thickness", 0.3, 1.8, unit="m", base_value=BLADE_THICKNESS)

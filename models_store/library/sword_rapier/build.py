@@ -23,7 +23,9 @@ RIBS, RIB = 7, 1.15  # of the grip: how many, and their width relative to the gr
 
 def build() -> ProceduralModel:
     """Model the rapier."""
-    recorder = Recorder("sword_rapier", "sword", description="A rapier or foil with cross bar, cup or both.")
+    recorder = Recorder(
+        "sword_rapier", "sword", unit_m=1.0, description="A rapier or foil with cross bar, cup or both."
+    )
     recorder.parameter("blade_length", "Blade length (without tip)", 0.5, 1.4, unit="m", base_value=BLADE_LENGTH)
     recorder.parameter("blade_width", "Blade width", 0.35, 2.5, unit="m", base_value=BLADE_WIDTH)
     recorder.parameter("blade_thickness", "Blade thickness", 0.2, 1.6, unit="m", base_value=BLADE_THICKNESS)

@@ -23,7 +23,7 @@ KNOB = (0.7, 1.04, 0.95, 0.5)
 
 def build() -> ProceduralModel:
     """Model the sabre."""
-    recorder = Recorder("sword_sabre", "sword", description="A sabre or scimitar with a curved blade.")
+    recorder = Recorder("sword_sabre", "sword", unit_m=1.0, description="A sabre or scimitar with a curved blade.")
     recorder.parameter("blade_length", "Blade length (without tip)", 0.5, 1.35, unit="m", base_value=BLADE_LENGTH)
     recorder.parameter("blade_width", "Blade width", 0.5, 2.0, unit="m", base_value=BLADE_WIDTH)
     recorder.parameter("blade_thickness", "Blade thickness", 0.3, 1.7, unit="m", base_value=BLADE_THICKNESS)

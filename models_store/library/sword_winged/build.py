@@ -27,7 +27,9 @@ RIBS, RIB = 7, 1.15  # of the grip: how many, and their width relative to the gr
 
 def build() -> ProceduralModel:
     """Model the sword."""
-    recorder = Recorder("sword_winged", "sword", description="An ornate sword whose guard bears wings or prongs.")
+    recorder = Recorder(
+        "sword_winged", "sword", unit_m=1.0, description="An ornate sword whose guard bears wings or prongs."
+    )
     recorder.parameter("blade_length", "Blade length (without tip)", 0.5, 1.5, unit="m", base_value=BLADE_LENGTH)
     recorder.parameter("blade_width", "Blade width", 0.5, 1.9, unit="m", base_value=BLADE_WIDTH)
     recorder.parameter("blade_thickness", "Blade thickness", 0.25, 2.5, unit="m", base_value=BLADE_THICKNESS)

@@ -26,7 +26,9 @@ EDGE_X, EDGE_Y = HALF_X - LEG_INSET, HALF_Y - LEG_INSET  # of the legs, outside
 
 def build() -> ProceduralModel:
     """Model the table."""
-    r = Recorder("table", "table", description="A rectangular table with four legs, with or without an apron.")
+    r = Recorder(
+        "table", "table", unit_m=1.0, description="A rectangular table with four legs, with or without an apron."
+    )
     _declare(r)
     top = board(r, (-HALF_X, -HALF_Y, 0.0), (HALF_X, HALF_Y, THICKNESS))[0]
     r.scale(Target((top.whole,), "world"), 1.0, "z", pivot=top.bottom, size="top_thickness")

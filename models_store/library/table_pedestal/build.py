@@ -34,7 +34,9 @@ BASES = ("disc", "square plate", "three claws", "four claws", "five claws", "bar
 
 def build() -> ProceduralModel:
     """Model the table."""
-    r = Recorder("table_pedestal", "table", description="A table on a column with a disc, claws or a barrel beneath.")
+    r = Recorder(
+        "table_pedestal", "table", unit_m=1.0, description="A table on a column with a disc, claws or a barrel beneath."
+    )
     _declare(r)
     plate = r.prism(SIDES, PLATE_DIAMETER, PLATE_THICKNESS, offset=(0.0, 0.0, HEIGHT - PLATE_THICKNESS))
     r.mark_sharp(plate.bottom, plate.top)

@@ -35,7 +35,10 @@ LEGS: dict[int, tuple[tuple[int, ...], ...]] = {
 def build() -> ProceduralModel:
     """Model the table."""
     r = Recorder(
-        "table_round", "table", description="A round, oval or round-cornered table on three, four or six legs."
+        "table_round",
+        "table",
+        unit_m=1.0,
+        description="A round, oval or round-cornered table on three, four or six legs.",
     )
     _declare(r)
     top, ring = _top(r)

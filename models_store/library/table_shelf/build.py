@@ -30,7 +30,9 @@ SHELF_Z = SHELF_HEIGHT - LEG_LENGTH
 
 def build() -> ProceduralModel:
     """Model the table."""
-    r = Recorder("table_shelf", "table", description="A table with rails, a shelf, bars or slats between four legs.")
+    r = Recorder(
+        "table_shelf", "table", unit_m=1.0, description="A table with rails, a shelf, bars or slats between four legs."
+    )
     _declare(r)
     top = board(r, (-HALF_X, -HALF_Y, 0.0), (HALF_X, HALF_Y, THICKNESS))[0]
     r.scale(Target((top.whole,), "world"), 1.0, "z", pivot=top.bottom, size="top_thickness")

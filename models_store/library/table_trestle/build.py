@@ -25,7 +25,9 @@ SUPPORTS = ("panel", "two posts with rails", "column on a foot", "crossed legs",
 
 def build() -> ProceduralModel:
     """Model the table."""
-    r = Recorder("table_trestle", "table", description="A table on two end supports, with or without a stretcher.")
+    r = Recorder(
+        "table_trestle", "table", unit_m=1.0, description="A table on two end supports, with or without a stretcher."
+    )
     _declare(r)
     plain = board(r, (-HALF_X, -HALF_Y, 0.0), (HALF_X, HALF_Y, THICKNESS))[0]
     slats = [_slat(r, number) for number in range(SLATS)]

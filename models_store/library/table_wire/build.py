@@ -20,7 +20,9 @@ GAP = 0.05  # from the ends of the posts to the ends of the crossed rods
 
 def build() -> ProceduralModel:
     """Model the table."""
-    r = Recorder("table_wire", "table", description="A table on a square frame of thin posts and crossed rods.")
+    r = Recorder(
+        "table_wire", "table", unit_m=1.0, description="A table on a square frame of thin posts and crossed rods."
+    )
     _declare(r)
     tops = _tops(r)
     low, thick = -HEIGHT, ROD / 2

@@ -24,7 +24,9 @@ LEDGE = 0.15
 
 def model() -> AnnotatingRecorder:
     """Model the tower."""
-    r = AnnotatingRecorder("tower", "tower", description="A tower of three stages with a gallery and a roof.")
+    r = AnnotatingRecorder(
+        "tower", "tower", unit_m=1.0, description="A tower of three stages with a gallery and a roof."
+    )
     r.choice("plan", "Plan", ("round", "square", "octagonal"))
     r.choice("roof", "Roof", ("pointed", "dome", "battlements", "flat"))
     r.parameter("width", "Width at the foot", 0.4, 2.0, unit="m", base_value=WIDTH)
