@@ -15,8 +15,8 @@ from service.dependencies import CursorQuery, IdPath, LimitQuery, Services, Serv
 from service.errors import Problem, ProblemError
 from service.routes import NOT_MODIFIED, binary, problems
 from service.schemas.models import InstanceIn, ModelDetailOut, ModelOut, ModelPageOut
-from shapewright.mesh import glb
 from shapewright.errors import ModelError
+from shapewright.mesh import glb
 from shapewright.modeling import ProceduralModel
 
 router = APIRouter(prefix="/v1/models", tags=["models"])

@@ -70,13 +70,13 @@ class ZBufferTarget:
     def __init__(self, vertices: Float[np.ndarray, "V 3"], triangles: Int[np.ndarray, "F 3"], size: int = 256) -> None:
         check_size(size)
         self.views = depth_views(vertices, triangles, size)
-        self._covered = np.isfinite(self.views[::2]).sum(axis=(1, 2)).astype(np.int64)
+        self.covered = np.isfinite(self.views[::2]).sum(axis=(1, 2)).astype(np.int64)
 
     def distance(self, vertices: Float[np.ndarray, "V 3"], triangles: Int[np.ndarray, "F 3"]) -> ZBufferDistance:
         """Distance of a generated object to the query, both in the same coordinates."""
         points, indices = prepared(vertices, triangles)
         sums = np.empty((len(PASS_FRAMES), 2))
-        views, covered_by_query = self.views, self._covered
+        views, covered_by_query = self.views, self.covered
         share_passes(
             lambda first, last: compare_passes(points, indices, PASS_FRAMES, views, covered_by_query, first, last, sums)
         )

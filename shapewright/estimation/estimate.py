@@ -50,4 +50,6 @@ def _estimator(name: EstimatorName, banks: BankOf | None) -> Estimator:
         from shapewright.estimation.reference import ReferenceEstimator
 
         return ReferenceEstimator(banks)
-    raise EstimationError(f"there is no estimator {name!r}", where="estimator")
+    from shapewright.estimation.fast.estimator import FastEstimator
+
+    return FastEstimator()

@@ -1,4 +1,4 @@
-"""A compiled model: the topology once, then positions for batches of parameters (DESIGN.md, section 2)."""
+"""A compiled model: the topology once, then positions for batches of parameters."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
@@ -10,7 +10,7 @@ from scipy import sparse
 from shapewright.errors import ModelError, ParameterError
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling.control_mesh import ControlMesh
-from shapewright.modeling.executable import link
+from shapewright.modeling.executable import link, multiply
 from shapewright.modeling.parameter_space import ParameterSpace, Values
 from shapewright.modeling.part import PartVertices
 from shapewright.modeling.procedural_model import ProceduralModel
@@ -142,8 +142,27 @@ class CompiledModel:
         """
         settled, present = self._settled(values)
         points = np.empty((len(values), self.surface_polygons(steps).n_vertices, 3))
-        for rows in self._chunks(len(values), steps):
+        for rows in _chunks(points.shape):
             self._surface.refine(self._executable.run(settled[rows], present[rows]), steps, points[rows])
+        return points
+
+    def combined_points(self, values: Float[np.ndarray, "B P"], matrix: sparse.csr_array) -> Float[np.ndarray, "B W 3"]:
+        """Return ``matrix @ control_points`` for each row of values: points at fixed places of the surface, say.
+
+        Args:
+            values: a batch.
+            matrix: (W, V), such as barycentric weights (W, V') times :meth:`surface_matrix` (V', V).
+
+        Raises:
+            ParameterError: the array has not P columns or holds NaN.
+            ModelError: the matrix has not V columns.
+        """
+        if matrix.shape[1] != len(self._live):
+            raise ModelError(f"expected a matrix of {len(self._live)} columns, got {matrix.shape[1]}")
+        settled, present = self._settled(values)
+        points = np.empty((len(values), matrix.shape[0], 3))
+        for rows in _chunks((len(values), max(matrix.shape), 3)):
+            multiply(matrix, self._executable.run(settled[rows], present[rows]), points[rows])
         return points
 
     def surface_chunks(
@@ -160,12 +179,8 @@ class CompiledModel:
     def _surface_chunks(
         self, settled: Values, present: Present, steps: int
     ) -> Iterator[tuple[int, Float[np.ndarray, "C V 3"]]]:
-        for rows in self._chunks(len(settled), steps):
+        for rows in _chunks((len(settled), self.surface_polygons(steps).n_vertices, 3)):
             yield rows.start, self._surface.refine(self._executable.run(settled[rows], present[rows]), steps)
-
-    def _chunks(self, count: int, steps: int) -> Iterator[slice]:
-        size = max(1, _CHUNK_BYTES // (24 * self.surface_polygons(steps).n_vertices))
-        return (slice(start, start + size) for start in range(0, count, size))
 
     def surface_matrix(self, steps: int = SUBDIVISION_STEPS) -> sparse.csr_array:
         """Return the matrix (V', V) that makes vertices after ``steps`` subdivisions of :meth:`control_points`.
@@ -233,6 +248,13 @@ def compile_model(model: ProceduralModel) -> CompiledModel:
     if model.closed and not compiled.is_closed:
         raise ModelError("the model says that it is closed, but its mesh has open edges", where="closed")
     return compiled
+
+
+def _chunks(shape: tuple[int, int, int]) -> Iterator[slice]:
+    """Yield the rows of a batch of points in pieces of bounded size."""
+    count, n_points, _ = shape
+    size = max(1, _CHUNK_BYTES // (24 * max(1, n_points)))
+    return (slice(start, start + size) for start in range(0, count, size))
 
 
 def _compact(mesh: ControlMesh, live: Int[np.ndarray, " V"]) -> Polygons:

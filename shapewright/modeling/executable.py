@@ -53,7 +53,8 @@ def multiply(
     """Write ``matrix @ points`` (W, 3) of each instance to ``products``."""
     from shapewright.modeling import program_kernels
 
-    program_kernels.multiply(matrix.indptr, matrix.indices, matrix.data, points, products)
+    starts, columns = (numbers.astype(np.int32, copy=False) for numbers in (matrix.indptr, matrix.indices))
+    program_kernels.multiply(starts, columns, matrix.data.astype(np.float64, copy=False), points, products)
 
 
 def carry_out(program: Program, positions: Float[np.ndarray, "V 3"]) -> Float[np.ndarray, "R 3"]:
@@ -110,7 +111,7 @@ def _executable(
     code = np.empty(sum(lengths), dtype=np.int64)
     at = 0
     for one, guard, length in zip(instructions, guards, lengths, strict=True):
-        header = (one.opcode, length, guard, one.slot, len(one.numbers), len(one.sources), *one.numbers)
+        header = [one.opcode, length, int(guard), one.slot, len(one.numbers), len(one.sources), *one.numbers]
         targets = at + length - len(one.targets)
         code[at : at + len(header)] = header
         code[at + len(header) : targets] = new_row[one.sources]

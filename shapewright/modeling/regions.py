@@ -12,6 +12,7 @@ from jaxtyping import Bool, Float, Int
 from shapewright.modeling.compiled import SUBDIVISION_STEPS, CompiledModel
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.procedural_model import ProceduralModel
+from shapewright.modeling.program import SCRATCH, Program
 
 _MEASURE = re.compile(
     "angle|arch|bend|breadth|bulge|chord|curve|depth|diameter|drop|edge|extent|gap|height|inset|length|lift|place|point|"
@@ -66,7 +67,10 @@ def find_regions(model: ProceduralModel) -> Regions:
     for index, operation in enumerate(model.operations):
         step = operation.apply(mesh)
         made_by += [index] * (mesh.n_components - len(made_by))
-        changed.append(frozenset(mesh.component_of(vertex) for vertex in step.writes()))
+        program = Program()
+        step.write(program, ())
+        moved = {int(row) for instruction in program.instructions for row in instruction.targets if row < SCRATCH}
+        changed.append(frozenset(mesh.component_of(vertex) for vertex in moved))
     part_of = {component.id: part.name.split(":")[0] for part in model.parts for component in part.components}
     kinds: list[str | int] = [part_of.get(c, made_by[c]) for c in range(mesh.n_components)]
     in_order = list(dict.fromkeys([*part_of.values(), *(kind for kind in kinds if isinstance(kind, int))]))

@@ -24,7 +24,10 @@ _VIRIDIS: Final = np.array(
 
 
 def residual_colors(distances: Float[np.ndarray, " N"], tolerance: float) -> Float[np.ndarray, "N 3"]:
-    """Return red, green, blue in 0..1: viridis from dark violet (no distance) to yellow (four tolerances or more)."""
-    shares = np.clip(distances / (TOLERANCES_SHOWN * tolerance), 0.0, 1.0)
+    """Return red, green, blue in 0..1: viridis from yellow (no distance) to dark violet (four tolerances or more).
+
+    A good fit is bright, so that its shading shows its shape.
+    """
+    shares = 1.0 - np.clip(distances / (TOLERANCES_SHOWN * tolerance), 0.0, 1.0)
     anchors = np.linspace(0.0, 1.0, len(_VIRIDIS))
     return np.stack([np.interp(shares, anchors, channel / 255.0) for channel in _VIRIDIS.T], axis=1)

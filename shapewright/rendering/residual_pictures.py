@@ -32,8 +32,8 @@ def compose_residuals(
     Args:
         query: the unknown mesh.
         fit: the fitted mesh, in the same coordinates.
-        query_distances: of each vertex of the query; what the model cannot follow is bright.
-        fit_distances: of each vertex of the fit; what the model invents is bright.
+        query_distances: of each vertex of the query; what the model cannot follow is dark.
+        fit_distances: of each vertex of the fit; what the model invents is dark.
         tolerance: marked on the legend; in the unit of the distances.
         rotation: turns both; by default :func:`three_quarter_view`, y upwards.
         size: pixels of each picture's side.

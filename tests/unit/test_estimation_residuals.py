@@ -102,11 +102,10 @@ def test_the_scene_colors_what_is_far():
     document = ResidualViews.of(query, fit).glb()
     assert parse_mesh(document, "glb").bounds == pytest.approx(fit.bounds), "any reader takes it"
     fit_colors, query_colors = (colors_of(document)[name][:, :3] for name in ("fit", "query"))
-    near, far = query_colors[0], fit_colors[fit_colors[:, 0].argmax()]
+    near, far = query_colors[0], fit_colors[fit_colors[:, 1].argmin()]
     assert np.allclose(query_colors, near), "the fit follows it everywhere"
-    assert np.allclose(near, [0.0578, 0.0003, 0.0887], atol=1e-3), "viridis begins dark violet, in linear light"
-    assert far[0] > 0.9
-    assert far[2] < 0.1
+    assert np.allclose(near, [0.982, 0.799, 0.0185], atol=1e-3), "viridis ends yellow, in linear light"
+    assert np.allclose(far, [0.0578, 0.0003, 0.0887], atol=1e-3), "and begins dark violet"
     assert np.allclose(fit_colors[:8], near)
 
 
@@ -116,11 +115,10 @@ def test_the_picture_shows_it_too_and_marks_the_tolerance():
     apart = ResidualViews.of(query, fit).picture(rotation=np.eye(3), size=120).astype(int)
     same = ResidualViews.of(query, query).picture(rotation=np.eye(3), size=120).astype(int)
     assert apart.shape == (176, 240, 3)
-    left = apart[60, 8]
-    assert left[0] > left[2] + 60, "far is yellow"
-    violet = same[60, 60]
-    assert violet[2] > violet[1] + 40, "near is violet"
+    left, middle = apart[60, 8], same[60, 60]
+    assert left[2] > left[1] + 40, "far is violet"
+    assert middle[0] > middle[2] + 60, "near is yellow"
     bar = same[128 + 20]
-    assert bar[14:40].sum() < bar[200:226].sum()
+    assert bar[14:40].sum() > bar[200:226].sum()
     quarter = 14 + (240 - 28) // 4
     assert bar[quarter].max() < 60, "a dark line at the tolerance, a quarter of the bar"

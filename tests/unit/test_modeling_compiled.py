@@ -7,6 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from literal_evaluation import literal_control_points, literal_settled
 from random_models import Recipe, recipes
+from scipy import sparse
 
 from shapewright.errors import ModelError
 from shapewright.modeling import CompiledModel, ProceduralModel, Recorder, compile_model, executable, when
@@ -43,7 +44,8 @@ def test_random_models_are_what_their_definitions_say(recipe: Recipe, seed: int)
 
 def test_shipped_models_are_what_their_definitions_say(library_models: dict[str, ProceduralModel]) -> None:
     rng = np.random.default_rng(0)
-    for model in library_models.values():
+    one_of_each_class = {model.class_name: model for model in library_models.values()}
+    for model in (*one_of_each_class.values(), library_models["helicopter_attack"]):
         made = compile_model(model)
         wild = rng.normal(1.0, 2.0, (20, made.n_parameters))
         np.testing.assert_array_equal(made.settle(wild), [literal_settled(model, row) for row in wild])
@@ -119,6 +121,21 @@ def test_one_matrix_makes_the_surface_of_control_points(steps: int) -> None:
     np.testing.assert_allclose(matrix.sum(axis=1), 1.0, atol=1e-12)
     for points, surface in zip(made.control_points(values), made.surface_points(values, steps), strict=True):
         np.testing.assert_allclose(matrix @ points, surface, atol=1e-12)
+
+
+def test_points_at_fixed_places_are_those_of_the_surface(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = compile_model(armchair())
+    values = made.random_values(np.random.default_rng(4), 21)
+    triangles = made.surface_triangles(1)
+    weights = np.full(triangles.size, 1.0 / 3.0)
+    middles = sparse.csr_array((weights, (np.repeat(np.arange(len(triangles)), 3), triangles.ravel())))
+    expected = made.surface_points(values, 1)[:, triangles].mean(axis=2)
+    matrix = middles @ made.surface_matrix(1)
+    np.testing.assert_allclose(made.combined_points(values, matrix), expected, atol=1e-12)
+    monkeypatch.setattr("shapewright.modeling.compiled._CHUNK_BYTES", 5 * expected[0].nbytes)
+    np.testing.assert_allclose(made.combined_points(values, matrix), expected, atol=1e-12)
+    with pytest.raises(ModelError, match="expected a matrix of"):
+        made.combined_points(values, middles)
 
 
 def test_a_matrix_that_would_fill_the_memory_is_refused_and_the_surface_made_without_it(

@@ -1,0 +1,91 @@
+"""A model prepared for fitting: its surface as sparse matrices, its free parameters and its options."""
+
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+from scipy import sparse
+
+from shapewright.estimation.fast.kernels import sample_surface
+from shapewright.modeling.compiled import CompiledModel
+
+COARSE, FINE = 1, 2
+"""Subdivision steps of the surface: while searching, and at the end."""
+
+
+class FittedModel:
+    """A compiled model as the search sees it.
+
+    Attributes:
+        compiled: the model.
+        widths: (P,) width of each parameter's range, never zero.
+        is_option: (P,) whether a parameter is a choice.
+        options: the values of each choice, empty for a measure.
+    """
+
+    def __init__(self, compiled: CompiledModel) -> None:
+        self.compiled = compiled
+        self.widths: Float[np.ndarray, " P"] = np.maximum(compiled.maximum - compiled.minimum, 1e-9)
+        self.options = tuple(tuple(x for x, _ in p.named_options()) for p in compiled.model.parameters)
+        self.is_option: Bool[np.ndarray, " P"] = np.array([bool(options) for options in self.options], dtype=bool)
+
+    @cached_property
+    def matrices(self) -> dict[int, sparse.csr_array]:
+        """The surface's vertices as a product with those of the control mesh, by subdivision steps."""
+        return {steps: self.compiled.surface_matrix(steps) for steps in (COARSE, FINE)}
+
+    @cached_property
+    def triangles(self) -> dict[int, Int[np.ndarray, "F 3"]]:
+        """Triangles of the surface, by subdivision steps."""
+        return {steps: np.ascontiguousarray(self.compiled.surface_triangles(steps)) for steps in (COARSE, FINE)}
+
+    @cached_property
+    def outline(self) -> sparse.csr_array:
+        """The vertices of the coarse surface, where the fine one has them: the fine shape with fewer triangles."""
+        return self.matrices[FINE][: self.matrices[COARSE].shape[0]]
+
+    def settle(self, values: Float[np.ndarray, " P"]) -> Float[np.ndarray, " P"]:
+        """Return one row settled."""
+        settled: Float[np.ndarray, " P"] = self.compiled.space.settle(values[None])[0]
+        return settled
+
+    def control_points(self, values: Float[np.ndarray, " P"]) -> Float[np.ndarray, "V 3"]:
+        """Return the control mesh of one row."""
+        points: Float[np.ndarray, "V 3"] = self.compiled.control_points(values[None])[0]
+        return points
+
+    def free_columns(
+        self, values: Float[np.ndarray, " P"]
+    ) -> tuple[Int[np.ndarray, " D"], Float[np.ndarray, " P"], Float[np.ndarray, " P"]]:
+        """Return the active measures that have room, and the ends of all ranges, given the other values."""
+        lowest, highest = (bounds[0] for bounds in self.compiled.space.ranges(values[None]))
+        active = self.compiled.space.active(values[None])[0]
+        free = active & ~self.is_option & (highest - lowest > 1e-9 * self.widths)
+        return np.flatnonzero(free), lowest, highest
+
+    def samples(
+        self, control: Float[np.ndarray, "V 3"], count: int, steps: int, first_share: float
+    ) -> tuple[sparse.csr_array, Float[np.ndarray, "N 3"]] | None:
+        """Spread samples evenly over an instance.
+
+        Returns:
+            A matrix (N, V) that makes the samples of control points, and the normals (N, 3) of this instance; ``None``
+            if the instance has no area.
+        """
+        matrix, triangles = self.matrices[steps], self.triangles[steps]
+        chosen, weights, normals = sample_surface(np.ascontiguousarray(matrix @ control), triangles, count, first_share)
+        if len(chosen) == 0:
+            return None
+        return barycentric_rows(chosen, weights, triangles, matrix), normals
+
+
+def barycentric_rows(
+    faces: Int[np.ndarray, " N"],
+    weights: Float[np.ndarray, "N 3"],
+    triangles: Int[np.ndarray, "F 3"],
+    matrix: sparse.csr_array,
+) -> sparse.csr_array:
+    """Return the matrix (N, V) that makes barycentric samples of a surface out of control points."""
+    ends = np.arange(0, 3 * len(faces) + 1, 3)
+    spread = sparse.csr_array((weights.ravel(), triangles[faces].ravel(), ends), shape=(len(faces), matrix.shape[0]))
+    return sparse.csr_array(spread @ matrix)

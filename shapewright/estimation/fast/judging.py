@@ -1,0 +1,97 @@
+"""What a fit determines: how its surface moves with every parameter and the pose, and how far it is from the query."""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial import cKDTree
+
+from shapewright.estimation.determination.determine import Determination, continuous_columns, determine
+from shapewright.estimation.determination.factors import IntervalFactors
+from shapewright.estimation.determination.information import pose_columns
+from shapewright.estimation.fast import kernels
+from shapewright.estimation.fast.candidate import Candidate
+from shapewright.estimation.fast.fitted_model import FINE
+from shapewright.estimation.fast.least_squares import closest_places
+from shapewright.estimation.fast.target import Target
+
+POINTS: Final = 2000
+_DIFFERENCE: Final = 1e-4
+_FAR: Final = 0.3
+_NEIGHBORS: Final = 16
+"""Points over which residuals are averaged before their size is taken."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivity:
+    """How the surface of a fit moves, and how far it is from the query.
+
+    Attributes:
+        jacobian: (N, A + 7) movement along the normals by x of each active measure, then by the pose.
+        gradient: (A,) of half the mean squared residual by x.
+        mean_residual: mean size of the local mean of the residuals, in half extents. Noise of single points averages
+            out in it as it does in the fit; what remains is what the model cannot follow.
+    """
+
+    jacobian: Float[np.ndarray, "N C"]
+    gradient: Float[np.ndarray, " A"]
+    mean_residual: float
+
+
+def measure_sensitivity(target: Target, candidate: Candidate) -> Sensitivity | None:
+    """Measure a fit; ``None`` if its instance has no area."""
+    model = candidate.model
+    values, compiled = candidate.values, model.compiled
+    active = compiled.space.active(values[None])[0]
+    columns = np.array(continuous_columns(compiled.model.parameters, active), dtype=np.int64)
+    highest = compiled.space.ranges(values[None])[1][0]
+    widths = model.widths[columns]
+    differences = np.where(values[columns] + _DIFFERENCE * widths <= highest[columns], 1.0, -1.0) * _DIFFERENCE * widths
+    rows = np.repeat(values[None], len(columns) + 1, axis=0)
+    rows[np.arange(1, len(rows)), columns] += differences
+    controls = compiled.control_points(rows)
+    samples = model.samples(controls[0], POINTS, FINE, 0.5)
+    if samples is None:
+        return None
+    matrix, normals = samples
+    moves = kernels.sparse_product(matrix, controls).reshape(POINTS, -1, 3)
+    placed = candidate.placed(np.ascontiguousarray(moves[:, 0]))
+    turned = np.ascontiguousarray(normals @ candidate.rotation.T)
+    own = (turned @ (candidate.scale * candidate.rotation))[:, None]  # normals in model space, scaled
+    slopes = ((moves[:, 1:] - moves[:, :1]) * own).sum(axis=2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slopes = np.where(differences != 0, slopes / differences, 0.0)
+    offsets = placed - closest_places(target, placed, turned)
+    along = (offsets * turned).sum(axis=1)
+    near = np.asarray(cKDTree(placed).query(placed, k=_NEIGHBORS)[1])
+    systematic = np.abs(along[near].mean(axis=1))
+    return Sensitivity(
+        np.column_stack([slopes, pose_columns(placed, turned)]),
+        slopes.T @ along / POINTS,
+        float(np.minimum(systematic, _FAR).mean()),
+    )
+
+
+def determine_fit(
+    target: Target, candidate: Candidate, *, scale_known: bool, factors: IntervalFactors
+) -> Determination | None:
+    """Judge every parameter of a fit; ``None`` if its instance has no area."""
+    sensitivity = measure_sensitivity(target, candidate)
+    if sensitivity is None:
+        return None
+    compiled = candidate.model.compiled
+    values = candidate.values[None]
+    lowest, highest = (bounds[0] for bounds in compiled.space.ranges(values))
+    return determine(
+        compiled.model.parameters,
+        candidate.values,
+        lowest,
+        highest,
+        compiled.space.active(values)[0],
+        sensitivity.jacobian,
+        mean_residual=sensitivity.mean_residual,
+        factor=factors.of(compiled.model.digest, compiled.model.name),
+        scale_known=scale_known,
+        gradient=sensitivity.gradient,
+    )

@@ -1,0 +1,233 @@
+"""The search of the fast estimator: from many starts to one polished answer, with the best so far at any moment."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Final, Literal
+
+import numpy as np
+from jaxtyping import Float
+
+from shapewright.estimation.fast.branches import other_choices
+from shapewright.estimation.fast.candidate import Candidate
+from shapewright.estimation.fast.fitted_model import COARSE, FINE, FittedModel
+from shapewright.estimation.fast.least_squares import Effort, fit
+from shapewright.estimation.fast.measure import fine_distance, outline_distance
+from shapewright.estimation.fast.polish import Polish
+from shapewright.estimation.fast.pool import Pool
+from shapewright.estimation.fast.starts import find_starts, spread
+from shapewright.estimation.fast.target import Target
+
+Phase = Literal["start", "fit", "polish"]
+
+INSTANCES: Final = 48
+"""Random instances of one model that are scored; several models share twice as many, but each has at least a third."""
+STARTS, STARTS_OF_EACH = 12, 2
+"""Candidates that least squares begin with: the best of all, and of each model."""
+PURSUED, OF_EACH_PURSUED = 5, 1
+"""Candidates that go on after the first fit: the best of all, and of each model."""
+BRANCHED: Final = 3
+"""Candidates whose options are changed."""
+POLISHED: Final = 2
+"""Candidates that are polished."""
+
+_FIRST: Final = Effort(
+    rounds=6, points=400, steps=COARSE, neighbors=3, width=0.2, damping=1e-2, pull=1e-6, outline=400, outline_width=0.2
+)
+_GLANCE: Final = Effort(rounds=3, points=300, steps=COARSE, neighbors=3, width=0.05, outline=400, outline_width=0.1)
+_CLOSER: Final = Effort(rounds=8, points=800, steps=FINE, outline=800)
+_DENSE: Final = Effort(rounds=8, points=2000, steps=FINE, damping=1e-4, outline=1000, outline_width=0.05)
+_PURE: Final = Effort(rounds=6, points=2000, steps=FINE, damping=1e-4)
+"""Surfaces alone: where the model can follow the query exactly, outlines only add the noise of pixels."""
+
+_BRANCHINGS: Final = 4
+_CHILDREN: Final = 3
+_GAIN: Final = 1e-4
+_ROUNDS, _ROUND_GAIN = 15, 1e-3
+_EXACT: Final = 0.06
+"""Z-buffer distance below which surfaces alone are tried, too."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known of the pose from model to normalized query space.
+
+    Attributes:
+        scale: of the pose; ``None`` if it is free.
+        rotations: (R, 3, 3), the only ones to begin with; ``None`` for all.
+        keeps_rotation: whether the rotation is exact.
+    """
+
+    scale: float | None = None
+    rotations: Float[np.ndarray, "R 3 3"] | None = None
+    keeps_rotation: bool = False
+
+
+@dataclass(eq=False)
+class Search:
+    """One search over one query.
+
+    Attributes:
+        target: the query.
+        models: what may rebuild it.
+        known: of the pose of each model.
+        report: told the share that is done and what is being done; may raise to stop.
+        best: the best candidate so far of each phase and model (by its number).
+        finished: phases that ran to their end.
+        kept: candidates that were fitted with care, for alternatives.
+    """
+
+    target: Target
+    models: Sequence[FittedModel]
+    known: Sequence[Known]
+    report: Callable[[float, str], None]
+    best: dict[tuple[Phase, int], Candidate] = field(default_factory=dict)
+    finished: set[Phase] = field(default_factory=set)
+    kept: list[Candidate] = field(default_factory=list)
+
+    def run(self, rng: np.random.Generator) -> None:
+        """Search; ``best`` is filled from the first moment on.
+
+        Raises:
+            Cancelled: ``report`` raised it.
+        """
+        self._message, self._fraction = "first orientations", 0.0
+        with Pool(self._ask) as pool:
+            self._pool = pool
+            candidates = self._begin(rng)
+            self._say(0.2, "first fits")
+            candidates = self._fitted(candidates, _FIRST)
+            self._say(0.45, "closer fits")
+            groups = [[one for one in candidates if one.model is model] for model in self.models]
+            candidates = self._fitted(_best_of(candidates, groups, PURSUED, OF_EACH_PURSUED), _CLOSER)
+            self._say(0.6, "options")
+            leaders = [self._branched(one, _CLOSER, outline_distance) for one in candidates[:BRANCHED]]
+            self.kept += candidates[BRANCHED:]
+            self._say(0.75, "dense fits")
+            candidates = self._fitted(_sorted(leaders), _DENSE)
+            leader = self._branched(candidates[0], _DENSE, fine_distance)
+            self.finished.add("fit")
+            self._say(0.85, "polish")
+            self._polish([leader, *candidates[1:POLISHED]], candidates[POLISHED:])
+            self.finished.add("polish")
+
+    # ------------------------------------------------------------------ phases
+
+    def _begin(self, rng: np.random.Generator) -> list[Candidate]:
+        count = max(INSTANCES // 3, min(INSTANCES, 2 * INSTANCES // len(self.models)))
+        rows = []
+        for model in self.models:
+            drawn = model.compiled.random_values(rng, count)
+            drawn[0] = model.settle(model.compiled.base_values())
+            rows.append(drawn)
+        tasks = list(zip(self.models, self.known, rows, strict=True))
+        groups = self._pool.map(
+            lambda task: find_starts(
+                self.target,
+                task[0],
+                task[2],
+                STARTS,
+                known_rotations=task[1].rotations,
+                known_scale=task[1].scale,
+            ),
+            tasks,
+        )
+        candidates = spread(groups, STARTS, STARTS_OF_EACH)
+        for group in groups:
+            if group:
+                self._keep("start", outline_distance(self.target, group[0]))
+        self.finished.add("start")
+        return candidates
+
+    def _fitted(self, candidates: Iterable[Candidate], effort: Effort) -> list[Candidate]:
+        found = self._pool.map(lambda one: self._fit(one, effort), list(candidates))
+        for one in found:
+            self._keep("fit", one)
+        return _sorted(found)
+
+    def _fit(self, candidate: Candidate, effort: Effort) -> Candidate:
+        known = self.known[self.models.index(candidate.model)]
+        return outline_distance(
+            self.target,
+            fit(
+                self.target,
+                candidate,
+                effort,
+                keeps_scale=known.scale is not None,
+                keeps_rotation=known.keeps_rotation,
+                checkpoint=self._pool.check,
+            ),
+        )
+
+    def _branched(
+        self, candidate: Candidate, effort: Effort, measure: Callable[[Target, Candidate], Candidate]
+    ) -> Candidate:
+        """Change options for as long as another choice comes nearer; a change inherits all that it can."""
+        candidate = measure(self.target, candidate)
+        for _ in range(_BRANCHINGS):
+            glances = _sorted(self._pool.map(lambda one: self._fit(one, _GLANCE), list(other_choices(candidate))))
+            limit = 1.25 * candidate.zbuffer + 0.02
+            hopeful = [one for one in glances if one.zbuffer < limit][:_CHILDREN]
+            children = _sorted(self._pool.map(lambda one: measure(self.target, self._fit(one, effort)), hopeful))
+            if not children or children[0].zbuffer >= candidate.zbuffer - _GAIN:
+                self.kept += children
+                return candidate
+            self.kept.append(candidate)
+            candidate = children[0]
+            self._keep("fit", candidate)
+        return candidate
+
+    def _polish(self, candidates: Sequence[Candidate], others: Sequence[Candidate]) -> None:
+        leader = candidates[0]
+        if leader.zbuffer < _EXACT:
+            pure = fine_distance(self.target, self._fit(leader, _PURE))
+            candidates = _sorted([pure, fine_distance(self.target, leader), *candidates[1:]])
+        polished = self._pool.map(self._polished, candidates)
+        self.kept += [*polished, *others]
+        for one in polished:
+            self._keep("polish", one)
+
+    def _polished(self, candidate: Candidate) -> Candidate:
+        known = self.known[self.models.index(candidate.model)]
+        polish = Polish.begin(
+            self.target,
+            candidate,
+            keeps_scale=known.scale is not None,
+            keeps_rotation=known.keeps_rotation,
+        )
+        for _ in range(_ROUNDS):
+            polish.round(self._pool.check)
+            self._keep("polish", polish.best)
+            if polish.gain < _ROUND_GAIN or polish.is_done:
+                break
+        return _sorted([fine_distance(self.target, polish.best), fine_distance(self.target, candidate)])[0]
+
+    # ------------------------------------------------------------------ what is known so far
+
+    def _keep(self, phase: Phase, candidate: Candidate) -> None:
+        key = phase, self.models.index(candidate.model)
+        best = self.best.get(key)
+        if best is None or candidate.zbuffer < best.zbuffer:
+            self.best[key] = candidate
+
+    def _say(self, fraction: float, message: str) -> None:
+        self._fraction, self._message = fraction, message
+        self._ask()
+
+    def _ask(self) -> None:
+        distance = min((one.zbuffer for one in list(self.best.values())), default=None)
+        known = "" if distance is None else f", z-buffer distance {distance:.4f}"
+        self.report(self._fraction, self._message + known)
+
+
+def _sorted(candidates: Iterable[Candidate]) -> list[Candidate]:
+    return sorted(candidates, key=lambda one: one.zbuffer)
+
+
+def _best_of(
+    candidates: Sequence[Candidate], groups: Sequence[Sequence[Candidate]], kept: int, of_each: int
+) -> list[Candidate]:
+    """Return the best of all and the best of each group, distinct, the best first."""
+    chosen = list(candidates[:kept])
+    for group in groups:
+        chosen += [one for one in group[:of_each] if all(one is not other for other in chosen)]
+    return chosen
