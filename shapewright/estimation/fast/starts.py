@@ -20,7 +20,7 @@ from shapewright.estimation.fast.kernels import (
 )
 from shapewright.estimation.fast.target import Target, principal_axes
 
-POINTS = 160
+POINTS = 112
 """Samples of the query and of an instance while poses are scored."""
 ROUNDS = 12
 """Rounds of closest points."""
