@@ -23,24 +23,24 @@ INSTANCES: Final = 48
 """Random instances of one model that are scored; several models share twice as many, but each has at least a third."""
 STARTS, STARTS_OF_EACH = 12, 2
 """Candidates that least squares begin with: the best of all, and of each model."""
-PURSUED, OF_EACH_PURSUED = 5, 1
+PURSUED, OF_EACH_PURSUED = 4, 1
 """Candidates that go on after the first fit: the best of all, and of each model."""
-BRANCHED: Final = 3
+BRANCHED: Final = 2
 """Candidates whose options are changed."""
 POLISHED: Final = 2
 """Candidates that are polished."""
 
 _FIRST: Final = Effort(
-    rounds=6, points=400, steps=COARSE, neighbors=3, width=0.2, damping=1e-2, pull=1e-6, outline=400, outline_width=0.2
+    rounds=6, points=300, steps=COARSE, neighbors=3, width=0.2, damping=1e-2, pull=1e-6, outline=300, outline_width=0.2
 )
-_GLANCE: Final = Effort(rounds=3, points=300, steps=COARSE, neighbors=3, width=0.05, outline=400, outline_width=0.1)
-_CLOSER: Final = Effort(rounds=8, points=800, steps=FINE, outline=800)
-_DENSE: Final = Effort(rounds=8, points=2000, steps=FINE, damping=1e-4, outline=1000, outline_width=0.05)
+_GLANCE: Final = Effort(rounds=2, points=300, steps=COARSE, neighbors=3, width=0.05, outline=300)
+_CLOSER: Final = Effort(rounds=8, points=600, steps=COARSE, neighbors=4, outline=600)
+_DENSE: Final = Effort(rounds=8, points=1200, steps=FINE, neighbors=4, damping=1e-4, outline=1000, outline_width=0.05)
 _PURE: Final = Effort(rounds=6, points=2000, steps=FINE, damping=1e-4)
 """Surfaces alone: where the model can follow the query exactly, outlines only add the noise of pixels."""
 
 _BRANCHINGS: Final = 4
-_CHILDREN: Final = 3
+_CHILDREN: Final = 2
 _GAIN: Final = 1e-4
 _ROUNDS, _ROUND_GAIN = 15, 1e-3
 _EXACT: Final = 0.06
@@ -165,7 +165,7 @@ class Search:
         candidate = measure(self.target, candidate)
         for _ in range(_BRANCHINGS):
             glances = _sorted(self._pool.map(lambda one: self._fit(one, _GLANCE), list(other_choices(candidate))))
-            limit = 1.25 * candidate.zbuffer + 0.02
+            limit = 1.1 * candidate.zbuffer + 0.02
             hopeful = [one for one in glances if one.zbuffer < limit][:_CHILDREN]
             children = _sorted(self._pool.map(lambda one: measure(self.target, self._fit(one, effort)), hopeful))
             if not children or children[0].zbuffer >= candidate.zbuffer - _GAIN:

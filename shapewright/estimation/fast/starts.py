@@ -5,6 +5,7 @@ No bank is needed: a few dozen instances, scored on few points by brute force, a
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 from jaxtyping import Float
@@ -20,10 +21,11 @@ from shapewright.estimation.fast.kernels import (
 )
 from shapewright.estimation.fast.target import Target, principal_axes
 
-POINTS = 160
+POINTS = 112
 """Samples of the query and of an instance while poses are scored."""
 ROUNDS = 12
 """Rounds of closest points."""
+_TURNS: Final = rotations_24()
 _TURNS_KEPT = 3
 """Orientations of an instance that go on to closest points."""
 
@@ -110,7 +112,7 @@ def _score(
     if rotations is None:
         frames = (principal_axes(centered), principal_axes(normals), np.eye(3))
         pairs = zip(target.frames, frames, strict=True)
-        rotations = np.concatenate([to.T @ rotations_24() @ own for to, own in pairs])
+        rotations = np.concatenate([to.T @ _TURNS @ own for to, own in pairs])
     size = target.radius if known_scale is None else known_scale * radius
     scores = np.empty(len(rotations), dtype=np.float32)
     score_rotations(
