@@ -12,9 +12,10 @@ import numpy as np
 from jaxtyping import Float, Float32, Int
 
 from shapewright.classification.dataset import Plan
-from shapewright.classification.sources import SERIES, InstanceGenerator, ModelSource
+from shapewright.classification.sources import SERIES, ModelSource
 from shapewright.distances.panorama import DESCRIPTOR_SIZE, VERSION, PanoramaDescriptor, panorama_distances
 from shapewright.errors import ClassifierError
+from shapewright.estimation.generator import InstanceGenerator
 from shapewright.mapped_arrays import read_arrays, read_header, write_arrays
 
 FORMAT: Final = "shapewright-exemplars"
