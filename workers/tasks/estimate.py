@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, cast
 from models_store import catalog
 from shapewright.errors import Cancelled
 from shapewright.progress import Progress
-from workers.banks import new_bank, stored_bank
 from workers.context import JobContext, Outcome
 from workers.finite import finite
+from workers.stored.banks import new_bank, stored_bank
 
 if TYPE_CHECKING:
     from shapewright.estimation import Estimation, InstanceGenerator, PanoramaBank

@@ -10,11 +10,11 @@ import numpy as np
 from models_store import catalog
 from models_store.tables import CollectionRow, RetrievalRow
 from shapewright.progress import PartialProgress, Progress
-from workers.banks import new_bank, stored_bank
-from workers.classifiers import stored_classifier
 from workers.context import JobContext, Outcome
 from workers.finite import finite
-from workers.indexes import load_index
+from workers.stored.banks import new_bank, stored_bank
+from workers.stored.classifiers import stored_classifier
+from workers.stored.indexes import load_index
 
 if TYPE_CHECKING:
     from jaxtyping import Float32
