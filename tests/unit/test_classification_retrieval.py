@@ -27,6 +27,7 @@ from shapewright.classification.retrieval import combined_scores
 from shapewright.distances.panorama import DESCRIPTOR_SIZE, panorama_descriptor, panorama_distance
 from shapewright.errors import Cancelled, ClassifierError
 from shapewright.estimation import build_bank
+from shapewright.mapped_arrays import read_header, write_arrays
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling import compile_model
 from shapewright.progress import CallbackProgress
@@ -121,10 +122,21 @@ def test_damaged_and_foreign_files_are_refused(index: CollectionIndex, tmp_path:
         with pytest.raises(ClassifierError, match="no index"):
             CollectionIndex.load(path)
     build_bank(compile_model(slab()), 2).save(path)
-    with pytest.raises(ClassifierError, match="unknown"):
+    with pytest.raises(ClassifierError, match="no index"):
         CollectionIndex.load(path)
     with pytest.raises(FileNotFoundError):
         CollectionIndex.load(tmp_path / "nowhere.npz")
+
+
+def test_an_index_of_another_descriptor_is_refused(index: CollectionIndex, tmp_path: Path) -> None:
+    path = tmp_path / "index.npz"
+    index.save(path)
+    header = read_header(path)
+    names = ("probabilities", "picture_probabilities", "known", "descriptors")
+    arrays = {name: getattr(index, name) for name in names}
+    write_arrays(path, {**header, "descriptor_version": header["descriptor_version"] + 1}, arrays)
+    with pytest.raises(ClassifierError, match="version of the descriptor"):
+        CollectionIndex.load(path)
 
 
 def test_an_index_of_another_classifier_does_not_fit(index: CollectionIndex) -> None:
