@@ -90,6 +90,23 @@ def test_what_is_known_stands_beside_each_value(document: dict[str, Any]) -> Non
         assert expected in text
 
 
+def test_a_stopped_search_says_what_it_did_not_reach(document: dict[str, Any]) -> None:
+    tried = [
+        {"model": {"id": "a", "name": "cup"}, "distances": document["distances"], "panorama": 0.1},
+        {"model": {"id": "b", "name": "mug"}, "distances": None, "panorama": None},
+    ]
+    stopped = {
+        **document,
+        "layer": 1,
+        "complete": False,
+        "tried": tried,
+        "verdict": {"layer": 1, "failed": [], "residuals": None},
+    }
+    text = printed(stopped)
+    assert "had not come to the layers above" in text
+    assert "Not fitted, as others were nearer or their turn had not come: mug." in text
+
+
 def test_a_time_limit_cancels_and_the_best_so_far_is_there() -> None:
     generator = EllGenerator("length")
     query = generator.mesh(np.array([1.2]))
