@@ -82,8 +82,8 @@ def fit(
         checkpoint: called once a round; may raise to stop.
 
     Returns:
-        The best round: of the later half the one with the smallest z-buffer distance if outlines pull, else the one with
-        the smallest misfit.
+        The best round: the one of the later half with the smallest z-buffer distance if outlines pull, else the one
+        with the smallest misfit.
     """
     samples = None
     best, stale = candidate, 0
