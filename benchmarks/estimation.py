@@ -33,7 +33,7 @@ def synthetic_query(compiled: CompiledModel, seed: int) -> tuple[TriangleMesh, n
 
 
 class PhaseClock:
-    """Seconds between the first report of each phase; the messages begin with the phase's name."""
+    """Seconds between the first report of each phase; the messages begin with the names of model and phase."""
 
     def __init__(self) -> None:
         self.begins: dict[str, float] = {}
@@ -42,7 +42,8 @@ class PhaseClock:
     def __call__(self, fraction: float, message: str) -> None:
         """Take a report."""
         self.reports += 1
-        self.begins.setdefault(message.split(":")[0], perf_counter())
+        phase = message.split(": ")[1] if ": " in message else message
+        self.begins.setdefault(phase, perf_counter())
 
     def seconds(self) -> dict[str, float]:
         """Seconds of each phase, up to now."""
