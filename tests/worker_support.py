@@ -4,10 +4,11 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 from uuid import uuid4
 
@@ -24,7 +25,13 @@ from models_store.tables import EstimationRow, JobRow
 from shapewright.modeling import ProceduralModel, Recorder, compile_model
 
 REPOSITORY = Path(__file__).resolve().parent.parent
-QUICK = {"subdivision_steps": 0, "surface_points": 50, "image_size": 16, "step_sizes": [1.0]}
+QUICK = {
+    "estimator": "reference",
+    "subdivision_steps": 0,
+    "surface_points": 50,
+    "image_size": 16,
+    "step_sizes": [1.0],
+}
 """Settings of an estimation that takes a second beside its bank, which takes about one for 1000 samples."""
 TIMEOUT_S = 90.0
 
@@ -94,9 +101,15 @@ class Site:
         return job.id
 
     def queue_estimation(
-        self, samples: int, *, height: float = 1.4, send: bool = True, **options: Any
+        self,
+        samples: int,
+        *,
+        height: float = 1.4,
+        send: bool = True,
+        changes: Mapping[str, Any] = MappingProxyType({}),
+        **options: Any,
     ) -> EstimationRow:
-        """Queue a quick estimation of a brick of this height, by the brick."""
+        """Queue a quick estimation of a brick of this height, by the brick; ``changes`` are other settings."""
         compiled = compile_model(brick())
         query = compiled.instance(np.array([height]), steps=0)
         mesh, _ = catalog.store_mesh(
@@ -104,7 +117,7 @@ class Site:
             file_name="query.off", file_type="off", mesh=query, now=now(),
         )  # fmt: skip
         model_id = self.add_model(brick())
-        settings = {**QUICK, "samples": samples}
+        settings = {**QUICK, "samples": samples, **changes}
         with self.database.writing() as session:
             row = catalog.request_estimation(session, mesh.id, model_id, settings, now=now(), **options)
         if send:

@@ -1,5 +1,6 @@
 """The tasks themselves, run in this process: what they keep, what they reuse, what they say when it fails."""
 
+import itertools
 import shutil
 import time
 from collections.abc import Callable, Iterator
@@ -11,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 from PIL import Image
 from worker_support import QUICK, Site, brick, now, rod
 
@@ -25,6 +27,7 @@ from shapewright.classification.exemplars import Exemplars
 from shapewright.estimation import EstimationSettings, PanoramaBank, estimate
 from shapewright.mesh.file import parse_mesh
 from shapewright.modeling import ProceduralModel, Recorder, compile_model
+from workers.context import JobContext
 from workers.runner import Runner
 from workers.settings import WorkerSettings
 from workers.stopping import StopNotice
@@ -96,6 +99,44 @@ def test_an_estimation_for_a_class_finds_the_model_and_keeps_every_bank(site: Si
     for model in models:
         (path,) = (Path(site.settings.data_dir) / "artifacts" / "banks" / model).iterdir()
         assert len(PanoramaBank.load(path)) == 30
+
+
+def test_the_fast_estimator_needs_no_bank_and_its_residuals_are_kept(site: Site) -> None:
+    row = site.queue_estimation(20, send=False, changes={"estimator": "fast"})
+    run(site, row.job_id)
+    assert site.job(row.job_id).state is JobState.SUCCEEDED, site.job(row.job_id).error_detail
+    done = site.estimation(row.id)
+    assert done.result["estimator"] == "fast"
+    assert done.result["verdict"]["residuals"]["followed_share"] > 0.99
+    assert not (Path(site.settings.data_dir) / "artifacts" / "banks").exists()
+    scene = trimesh.load(BytesIO(site.artifacts.get(done.residuals_key)), file_type="glb")
+    assert set(scene.geometry) == {"fit", "query"}
+    query = parse_mesh(site.artifacts.get(f"meshes/{row.mesh_id}/source.off"), "off")
+    assert np.allclose(scene.geometry["query"].bounds, query.bounds, atol=1e-6)
+    colors = scene.geometry["query"].visual.vertex_colors[:, :3]
+    assert (colors[:, 0] > colors[:, 2]).all(), "yellow: it lies on the fit"
+
+
+@pytest.mark.parametrize("estimator", ["fast", "reference"])
+def test_when_the_time_is_over_the_best_until_then_is_the_answer(
+    site: Site, estimator: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ticks = itertools.count()
+    monkeypatch.setattr(JobContext, "seconds", property(lambda context: float(next(ticks))))
+    row = site.queue_estimation(2000, send=False, changes={"estimator": estimator}, time_limit_s=8.0)
+    run(site, row.job_id)
+    job, done = site.job(row.job_id), site.estimation(row.id)
+    assert (job.state, job.error_detail) == (JobState.SUCCEEDED, None)
+    assert not done.result["complete"]
+    assert done.mesh_key is not None
+
+
+def test_an_estimation_with_no_time_at_all_says_so(site: Site) -> None:
+    row = site.queue_estimation(20, send=False, time_limit_s=1e-9)
+    run(site, row.job_id)
+    job = site.job(row.job_id)
+    assert (job.state, job.error_where) == (JobState.FAILED, "time_limit_s")
+    assert "time was over" in job.error_detail
 
 
 def test_a_damaged_bank_is_built_anew(site: Site) -> None:

@@ -386,6 +386,29 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/v1/estimations/{id}/residuals": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Estimation Residuals
+         * @description Where the query and the fitted mesh part, as vertex colors; 404 until there is a fitted mesh.
+         *
+         *     Yellow lies on the other surface; dark violet is four times the tolerance away from it, or more. Both meshes are in
+         *     the query's own coordinates.
+         */
+        get: operations["get_estimation_residuals"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/v1/collections": {
         parameters: {
             query?: never;
@@ -1131,6 +1154,11 @@ export interface components {
              * @description The axis of the mesh's file that points up.
              */
             up?: ("+x" | "-x" | "+y" | "-y" | "+z" | "-z") | null;
+            /**
+             * Time Limit S
+             * @description Seconds of work after which the best answer until then is taken.
+             */
+            time_limit_s?: number | null;
             settings?: components["schemas"]["EstimationSettingsIn"];
         };
         /**
@@ -1168,6 +1196,11 @@ export interface components {
              * @description Axis of the mesh's file that points up, if it was given.
              */
             up: string | null;
+            /**
+             * Time Limit S
+             * @description Seconds of work that it may take, if that was limited.
+             */
+            time_limit_s: number | null;
             /** Settings */
             settings: {
                 [key: string]: unknown;
@@ -1178,6 +1211,11 @@ export interface components {
              * @description The fitted mesh as GLB, in the query's coordinates.
              */
             mesh_url: string | null;
+            /**
+             * Residuals Url
+             * @description Mesh and fit as GLB, colored by how far each part of them is from the other.
+             */
+            residuals_url: string | null;
             /** Job Id */
             job_id: string;
             /**
@@ -1260,6 +1298,8 @@ export interface components {
         /**
          * EstimationSettingsIn
          * @description Settings of an estimation; what is left out keeps the library's default (paper section 3.3).
+         *
+         *     Those of random instances, points, pictures and steps are the reference's.
          */
         EstimationSettingsIn: {
             /**
@@ -1305,9 +1345,9 @@ export interface components {
             seed?: number | null;
             /**
              * Estimator
-             * @description Which estimator works; `reference` is the paper, step by step.
+             * @description Which estimator works: `fast` (the default), or `reference`, the paper step by step.
              */
-            estimator?: "reference" | null;
+            estimator?: ("fast" | "reference") | null;
         };
         /**
          * FailedThresholdOut
@@ -3414,6 +3454,53 @@ export interface operations {
         requestBody?: never;
         responses: {
             /** @description The fitted mesh as GLB. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "model/gltf-binary": string;
+                };
+            };
+            /** @description Not modified. */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such thing. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    get_estimation_residuals: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A scene with the nodes `fit` and `query`, colored. */
             200: {
                 headers: {
                     [name: string]: unknown;
