@@ -215,6 +215,7 @@ class EstimationRow(Base):
     """Which parameter values rebuild a mesh; ``result`` and ``mesh_key`` are set once.
 
     Asked for with a class, ``model_ids`` are the models of the class then, and ``model_id`` comes with the result.
+    ``units`` and ``up`` say what is known about the coordinates of the mesh.
     """
 
     __tablename__ = "estimations"
@@ -226,6 +227,8 @@ class EstimationRow(Base):
     model_id: Mapped[str | None] = mapped_column(ForeignKey(ModelRow.id), index=True)
     class_name: Mapped[str | None] = mapped_column(Text)
     model_ids: Mapped[list[str] | None]
+    units: Mapped[str | None] = mapped_column(String(2))
+    up: Mapped[str | None] = mapped_column(String(2))
     settings: Mapped[dict[str, Any]]
     result: Mapped[dict[str, Any] | None]
     mesh_key: Mapped[str | None] = mapped_column(Text)

@@ -40,6 +40,8 @@ def create_estimation(services: ServicesDep, response: Response, after: Backgrou
                 body.model_id,
                 settings,
                 class_name=body.class_name,
+                units=body.units,
+                up=body.up,
                 now=now(),
                 max_attempts=services.settings.max_attempts,
             )

@@ -91,7 +91,7 @@ def test_an_estimation_for_a_class_finds_the_model_and_keeps_every_bank(site: Si
     assert site.job(row.job_id).state is JobState.SUCCEEDED, site.job(row.job_id).error_detail
     done = site.estimation(row.id)
     assert done.model_id == rods.digest
-    assert [one["model_name"] for one in done.result["models_tried"]] == ["rod", "brick"]
+    assert [one["model"]["name"] for one in done.result["tried"]] == ["rod", "brick"]
     assert done.result["parameters"][0]["name"] == "length"
     for model in models:
         (path,) = (Path(site.settings.data_dir) / "artifacts" / "banks" / model).iterdir()

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def estimate(context: JobContext) -> Outcome:
     """Run the estimation of the row; a cancelled one hands back its best so far, if it has one."""
-    from shapewright.estimation import EstimationCancelled, EstimationSettings
+    from shapewright.estimation import EstimationCancelled, EstimationSettings, Query
     from shapewright.estimation import estimate as find
     from shapewright.modeling import compile_model
 
@@ -30,7 +30,7 @@ def estimate(context: JobContext) -> Outcome:
         return stored_bank(context, compiled, settings) or new_bank(context, compiled, settings, progress)
 
     context.progress.report(0.0, "reading the mesh")
-    query = context.load_query(row.mesh_id)
+    query = Query(context.load_query(row.mesh_id), units=row.units, up=row.up)
     generators = [compile_model(context.load_model(model_id)) for model_id in model_ids]
     try:
         found = find(query, generators, settings, progress=context.progress, banks=banks)
@@ -50,6 +50,5 @@ def _outcome(context: JobContext, identifier: str, estimation: "Estimation", *, 
         identifier=identifier,
         result=result,
         mesh_key=key,
-        model_id=estimation.model.digest,
     )
     return Outcome(record, (key,), cancelled=cancelled)
