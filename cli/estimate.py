@@ -1,5 +1,6 @@
 """`shapewright estimate`: which parameter values rebuild this mesh?"""
 
+import os
 import time
 from dataclasses import asdict
 from pathlib import Path
@@ -17,7 +18,10 @@ if TYPE_CHECKING:
 
 
 def estimate(
-    mesh: Annotated[Path, typer.Argument(help="Mesh file: .off, .obj, .ply, .stl, .glb.", show_default=False)],
+    mesh: Annotated[
+        Path,
+        typer.Argument(help="Mesh file (.off, .obj, .ply, .stl, .glb), or a folder of them.", show_default=False),
+    ],
     models: Annotated[
         list[str] | None,
         typer.Option(
@@ -32,7 +36,11 @@ def estimate(
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="Write the fitted mesh (.glb, .obj, .off, .ply, .stl)."),
+        typer.Option(
+            "--output",
+            "-o",
+            help="Write the fitted mesh (.glb, .obj, .off, .ply, .stl), or a folder's table (.parquet, .csv, .jsonl).",
+        ),
     ] = None,
     picture: Annotated[
         Path | None, typer.Option(help="Write a PNG: the query, the fitted mesh, and both in one.")
@@ -49,6 +57,25 @@ def estimate(
     settings_file: Annotated[
         Path | None, typer.Option("--settings", help='JSON file with any of the settings, e.g. {"image_size": 128}.')
     ] = None,
+    sort: Annotated[
+        str | None,
+        typer.Option(
+            metavar="COLUMN[/COLUMN]",
+            help="Folder: sort the rows by a parameter or a ratio, e.g. stem_length/bowl_depth.",
+            show_default=False,
+        ),
+    ] = None,
+    descending: Annotated[bool, typer.Option("--descending", help="Folder: the largest first.")] = False,
+    strip: Annotated[
+        Path | None,
+        typer.Option(help="Folder: write a PNG of the sorted meshes above their fits.", show_default=False),
+    ] = None,
+    jobs: Annotated[
+        int | None,
+        typer.Option(
+            min=1, max=256, help="Folder: processes (default: as many as there are cores).", show_default=False
+        ),
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Estimate the parameters of a procedural model, or of the best one of a class, so that it rebuilds a mesh.
@@ -56,13 +83,19 @@ def estimate(
     The fitted mesh is written in the coordinates of your file, so that both lie on top of each other. The default
     settings are the method's own and take minutes; --quick is for a first look.
 
+    A folder gives a table with one row for each mesh below it; a mesh that cannot be estimated is a row with the
+    reason. Running the command again estimates only what has no row yet.
+
     Examples:
 
       [bold]shapewright estimate goblet.ply --model glass_with_stem[/]
       [bold]shapewright estimate goblet.ply --class glass_with_stem[/]
       [bold]shapewright estimate goblet.ply -m glass_with_stem --quick -o fitted.glb --picture fit.png[/]
+      [bold]shapewright estimate DIR --class glass_with_stem -o glasses.parquet[/]
+      [bold]shapewright estimate DIR --class glass_with_stem -o t.csv --sort stem_length/bowl_depth --strip s.png[/]
     """
-    _refuse_endings(output, picture)
+    if not mesh.is_dir():
+        _refuse_endings(output, picture)
     if (class_name is None) == (not models):
         raise typer.BadParameter("name models or a class", param_hint="--model")
     from shapewright.estimation import EstimationSettings
@@ -70,12 +103,23 @@ def estimate(
     from shapewright.mesh.file import load_mesh
 
     generators = load_class(class_name) if class_name is not None else [load_compiled(model) for model in models or []]
-    query = load_mesh(mesh, in_child=True)
     chosen = EstimationSettings.quick().to_dict() if quick else {}
     if settings_file is not None:
         chosen |= read_object(settings_file)
     chosen |= {name: value for name, value in {"samples": samples, "seed": seed}.items() if value is not None}
     settings = EstimationSettings.from_dict(chosen)
+    if mesh.is_dir():
+        from cli.estimate_folder import FolderRequest, estimate_folder
+
+        if output is None or picture is not None:
+            raise typer.BadParameter("a folder needs a table to write, and has no --picture", param_hint="--output")
+        cores = jobs or len(os.sched_getaffinity(0))
+        request = FolderRequest(mesh, generators, settings, None, None, output, sort, descending, strip, cores)
+        estimate_folder(request, as_json=as_json)
+        return
+    if sort is not None or strip is not None:
+        raise typer.BadParameter("are for a folder of meshes", param_hint="--sort, --strip")
+    query = load_mesh(mesh, in_child=True)
     started_s = time.monotonic()
     with shown_progress("estimating") as progress:
         estimation = run_estimation(query, generators, settings, progress=progress)
