@@ -18,6 +18,7 @@ from cli.child_process import die_with_parent
 from cli.console import print_json, shown_progress
 from cli.finished_rows import FinishedRows
 from cli.table_files import check_ending, save_table
+from cli.time_limit import Deadline
 from shapewright.errors import Cancelled
 from shapewright.progress import CallbackProgress, Progress
 
@@ -45,6 +46,7 @@ class FolderRequest:
         sort: what its rows are sorted by; the names of the files if not given.
         descending: whether the largest comes first.
         strip: picture of the sorted meshes to write.
+        time_limit_s: seconds after which an estimation ends with its best until then.
         jobs: processes.
     """
 
@@ -57,6 +59,7 @@ class FolderRequest:
     sort: str | None
     descending: bool
     strip: Path | None
+    time_limit_s: float | None
     jobs: int
 
     def sort_key(self) -> "SortKey | None":
@@ -134,7 +137,9 @@ class _Run:
         left = {name: file for name, file in self.files.items() if name not in self.rows}
         stop = multiprocessing.get_context("spawn").Event()
         models = [compiled.model for compiled in request.models]
-        work = Work(models, request.settings, request.units, request.up, partial(_stoppable, stop))
+        work = Work(
+            models, request.settings, request.units, request.up, partial(_stoppable, stop, request.time_limit_s)
+        )
         jobs = min(request.jobs, len(left))
         began_s = time.monotonic()
         try:
@@ -167,6 +172,7 @@ def _conditions(request: FolderRequest) -> dict[str, Any]:
         "settings": request.settings.to_dict(),
         "units": request.units,
         "up": request.up,
+        "time_limit_s": request.time_limit_s,
     }
 
 
@@ -176,12 +182,13 @@ def _begin_child() -> None:
     die_with_parent()
 
 
-def _stoppable(stop: "Event") -> Progress:
+def _stoppable(stop: "Event", time_limit_s: float | None) -> Progress:
     def look(fraction: float, message: str) -> None:
         if stop.is_set():
             raise Cancelled
 
-    return CallbackProgress(look)
+    progress = CallbackProgress(look)
+    return progress if time_limit_s is None else Deadline(progress, time.monotonic() + time_limit_s)
 
 
 @contextmanager

@@ -25,10 +25,10 @@ from shapewright.classification.exemplars import Exemplars
 from shapewright.estimation import EstimationSettings, PanoramaBank, estimate
 from shapewright.mesh.file import parse_mesh
 from shapewright.modeling import ProceduralModel, Recorder, compile_model
-from workers.array_store import ArtifactArrays
 from workers.runner import Runner
 from workers.settings import WorkerSettings
 from workers.stopping import StopNotice
+from workers.stored.arrays import ArtifactArrays
 
 
 @pytest.fixture

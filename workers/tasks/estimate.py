@@ -1,17 +1,18 @@
 """Find the parameter values and the pose with which a model, or the best one of a class, rebuilds an uploaded mesh."""
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from models_store import catalog
 from shapewright.errors import Cancelled
 from shapewright.progress import Progress
-from workers.banks import new_bank, stored_bank
 from workers.context import JobContext, Outcome
 from workers.finite import finite
+from workers.stored.banks import new_bank, stored_bank
 
 if TYPE_CHECKING:
     from shapewright.estimation import Estimation, InstanceGenerator, PanoramaBank
+    from shapewright.estimation.query import Axis, Unit
 
 
 def estimate(context: JobContext) -> Outcome:
@@ -30,7 +31,7 @@ def estimate(context: JobContext) -> Outcome:
         return stored_bank(context, compiled, settings) or new_bank(context, compiled, settings, progress)
 
     context.progress.report(0.0, "reading the mesh")
-    query = Query(context.load_query(row.mesh_id), units=row.units, up=row.up)
+    query = Query(context.load_query(row.mesh_id), units=cast("Unit | None", row.units), up=cast("Axis | None", row.up))
     generators = [compile_model(context.load_model(model_id)) for model_id in model_ids]
     try:
         found = find(query, generators, settings, progress=context.progress, banks=banks)
