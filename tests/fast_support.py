@@ -9,7 +9,7 @@ from shapewright.estimation.fast.candidate import Candidate
 from shapewright.estimation.fast.fitted_model import FittedModel
 from shapewright.estimation.fast.target import Target
 from shapewright.mesh import TriangleMesh
-from shapewright.modeling import CompiledModel, Recorder, compile_model
+from shapewright.modeling import CompiledModel, Recorder, compile_model, group, when
 
 
 def lever() -> CompiledModel:
@@ -24,12 +24,12 @@ def lever() -> CompiledModel:
     recorder.limit("width", maximum=("foot", 0.5, 1.0))
     recorder.switch("flag", "Flag")
     foot = recorder.box(3.0, 1.2, 0.5, offset=(1.0, 0.2, 0.0))
-    tower = recorder.box(0.7, 0.5, 1.6, offset=(0.0, 0.3, 0.8))
+    tower = recorder.box(0.7, 0.5, 1.6, offset=(0.0, 0.3, 0.4))
     flag = recorder.box(0.3, 0.9, 0.4, offset=(0.0, -0.4, 0.6))
-    recorder.scale(foot.whole, 1.0, "x", size="foot")
-    recorder.scale(foot.whole, 1.0, "y", size="width")
-    recorder.scale(tower.whole, 1.0, "z", size="tower")
-    recorder.part("flag", [flag], [_with("flag")])
+    recorder.scale(group(foot.whole, frame="world"), 1.0, "u", size="foot")
+    recorder.scale(group(foot.whole, frame="world"), 1.0, "v", size="width")
+    recorder.scale(group(tower.whole, frame="world"), 1.0, "z", size="tower")
+    recorder.part("flag", [flag], [when("flag", 1)])
     return compile_model(recorder.build())
 
 
@@ -37,7 +37,7 @@ def rigid() -> CompiledModel:
     """A model without parameters."""
     recorder = Recorder("rigid", "lever")
     recorder.box(3.0, 1.2, 0.5)
-    recorder.box(0.7, 0.5, 1.6, offset=(0.6, 0.3, 0.8))
+    recorder.box(0.7, 0.5, 1.6, offset=(0.6, 0.3, 0.4))
     return compile_model(recorder.build())
 
 
@@ -47,19 +47,13 @@ def signs() -> CompiledModel:
     recorder.choice("board", "Board", ("wide", "tall", "none"))
     recorder.switch("foot", "Foot")
     recorder.box(0.2, 0.3, 2.0)
-    wide = recorder.box(0.1, 1.6, 0.5, offset=(0.1, 0.2, 0.8))
-    tall = recorder.box(0.1, 0.6, 1.2, offset=(0.1, 0.2, 0.5))
-    foot = recorder.box(1.0, 0.6, 0.1, offset=(0.2, 0.0, -1.0))
-    recorder.part("wide", [wide], [_with("board", 1)])
-    recorder.part("tall", [tall], [_with("board", 2)])
-    recorder.part("foot", [foot], [_with("foot")])
+    wide = recorder.box(0.1, 1.6, 0.5, offset=(0.1, 0.2, 1.4))
+    tall = recorder.box(0.1, 0.6, 1.2, offset=(0.1, 0.2, 0.8))
+    foot = recorder.box(1.0, 0.6, 0.1, offset=(0.2, 0.0, 0.0))
+    recorder.part("wide", [wide], [when("board", 1)])
+    recorder.part("tall", [tall], [when("board", 2)])
+    recorder.part("foot", [foot], [when("foot", 1)])
     return compile_model(recorder.build())
-
-
-def _with(name: str, value: int = 1):
-    from shapewright.modeling import when
-
-    return when(name, value)
 
 
 def target_of(mesh: TriangleMesh, size: int = 128) -> Target:
