@@ -80,6 +80,15 @@ class _Work:
         known = [_known(comparison) for comparison in self._comparisons]
         models = [FittedModel(model) for model in compiled]
         self.search = Search(target, models, known, lambda fraction, message: None)
+        self.search.best["start", 0] = self._first_guess()
+
+    def _first_guess(self) -> Candidate:
+        """Return the base instance of the first model as the paper normalizes it: an answer from the first moment on."""
+        comparison, model = self._comparisons[0], self.search.models[0]
+        values = model.settle(model.compiled.base_values())
+        pose = comparison.initial_pose(comparison.instance(values))
+        guess = Candidate(model, values, pose.rotation, pose.translation, pose.scale)
+        return fine_distance(self.search.target, guess)
 
     def answer(self, *, complete: bool) -> Estimation | None:
         """Answer with the best so far; ``None`` before there is any."""
