@@ -83,7 +83,7 @@ class _Work:
         self.search.best["start", 0] = self._first_guess()
 
     def _first_guess(self) -> Candidate:
-        """Return the base instance of the first model as the paper normalizes it: an answer from the first moment on."""
+        """Return the base instance of the first model, as the paper normalizes it: an answer at once."""
         comparison, model = self._comparisons[0], self.search.models[0]
         values = model.settle(model.compiled.base_values())
         pose = comparison.initial_pose(comparison.instance(values))
