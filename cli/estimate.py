@@ -1,5 +1,6 @@
 """`shapewright estimate`: which parameter values rebuild this mesh?"""
 
+import os
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -22,7 +23,10 @@ ESTIMATORS = ("fast", "reference")
 
 
 def estimate(
-    mesh: Annotated[Path, typer.Argument(help="Mesh file: .off, .obj, .ply, .stl, .glb.", show_default=False)],
+    mesh: Annotated[
+        Path,
+        typer.Argument(help="Mesh file (.off, .obj, .ply, .stl, .glb), or a folder of them.", show_default=False),
+    ],
     models: Annotated[
         list[str] | None,
         typer.Option(
@@ -37,7 +41,11 @@ def estimate(
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="Write the fitted mesh (.glb, .obj, .off, .ply, .stl)."),
+        typer.Option(
+            "--output",
+            "-o",
+            help="Write the fitted mesh (.glb, .obj, .off, .ply, .stl), or a folder's table (.parquet, .csv, .jsonl).",
+        ),
     ] = None,
     picture: Annotated[
         Path | None, typer.Option(help="Write a PNG: the query, the fitted mesh, and both in one.")
@@ -72,12 +80,31 @@ def estimate(
             "--time-limit",
             min=0.0,
             metavar="SECONDS",
-            help="Stop after so many seconds with the best answer until then.",
+            help="Stop after so many seconds, of a folder for each mesh, with the best answer until then.",
             show_default=False,
         ),
     ] = None,
     settings_file: Annotated[
         Path | None, typer.Option("--settings", help='JSON file with any of the settings, e.g. {"image_size": 128}.')
+    ] = None,
+    sort: Annotated[
+        str | None,
+        typer.Option(
+            metavar="COLUMN[/COLUMN]",
+            help="Folder: sort the rows by a parameter or a ratio, e.g. stem_length/bowl_depth.",
+            show_default=False,
+        ),
+    ] = None,
+    descending: Annotated[bool, typer.Option("--descending", help="Folder: the largest first.")] = False,
+    strip: Annotated[
+        Path | None,
+        typer.Option(help="Folder: write a PNG of the sorted meshes above their fits.", show_default=False),
+    ] = None,
+    jobs: Annotated[
+        int | None,
+        typer.Option(
+            min=1, max=256, help="Folder: processes (default: as many as there are cores).", show_default=False
+        ),
     ] = None,
     as_json: AsJson = False,
 ) -> None:
@@ -87,13 +114,19 @@ def estimate(
     settings are the method's own and take minutes; --quick is for a first look, --time-limit for a fixed wait. Say the
     unit of your file if you know it: without it the size of the mesh says nothing, only proportions do.
 
+    A folder gives a table with one row for each mesh below it; a mesh that cannot be estimated is a row with the
+    reason. Running the command again estimates only what has no row yet.
+
     Examples:
 
       [bold]shapewright estimate goblet.ply --model glass_with_stem[/]
       [bold]shapewright estimate goblet.ply --class glass_with_stem --units mm --up +z[/]
       [bold]shapewright estimate goblet.ply -m glass_with_stem --quick -o fitted.glb --picture fit.png[/]
+      [bold]shapewright estimate DIR --class glass_with_stem -o glasses.parquet[/]
+      [bold]shapewright estimate DIR --class glass_with_stem -o t.csv --sort stem_length/bowl_depth --strip s.png[/]
     """
-    _refuse_endings(output, picture)
+    if not mesh.is_dir():
+        _refuse_endings(output, picture)
     if (class_name is None) == (not models):
         raise typer.BadParameter("name models or a class", param_hint="--model")
     from shapewright.estimation import EstimationCancelled, EstimationSettings, Query
@@ -109,8 +142,20 @@ def estimate(
     _one_of(units, UNITS, "--units")
     _one_of(up, AXES, "--up")
     generators = load_class(class_name) if class_name is not None else [load_compiled(model) for model in models or []]
+    unit, axis = cast("Unit | None", units), cast("Axis | None", up)
+    if mesh.is_dir():
+        from cli.estimate_folder import FolderRequest, estimate_folder
+
+        if output is None or picture is not None:
+            raise typer.BadParameter("a folder needs a table to write, and has no --picture", param_hint="--output")
+        limits = (time_limit_s, jobs or len(os.sched_getaffinity(0)))
+        request = FolderRequest(mesh, generators, settings, unit, axis, output, sort, descending, strip, *limits)
+        estimate_folder(request, as_json=as_json)
+        return
+    if sort is not None or strip is not None:
+        raise typer.BadParameter("are for a folder of meshes", param_hint="--sort, --strip")
     mesh_read = load_mesh(mesh, in_child=True)
-    query = Query(mesh_read, units=cast("Unit | None", units), up=cast("Axis | None", up))
+    query = Query(mesh_read, units=unit, up=axis)
     started_s = time.monotonic()
     with shown_progress("estimating") as shown:
         progress = LimitedProgress(

@@ -13,8 +13,8 @@ from shapewright.errors import MeshError
 from shapewright.estimation import Distances, Estimation, EstimationSettings, ParameterEstimate, Query, Stage, estimate
 from shapewright.estimation.result import Alternative, Layer, Ratio
 from shapewright.evaluation.datasets import Skipped
-from shapewright.evaluation.in_processes import in_processes
 from shapewright.evaluation.synthetic import Truth
+from shapewright.in_processes import in_processes
 from shapewright.modeling import CompiledModel, ProceduralModel, compile_model
 from shapewright.progress import NULL_PROGRESS, Progress
 

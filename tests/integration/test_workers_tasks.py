@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import trimesh
 from PIL import Image
+from waiting import wait_until
 from worker_support import QUICK, Site, brick, now, rod
 
 from models_store import catalog
@@ -27,7 +28,7 @@ from shapewright.classification.exemplars import Exemplars
 from shapewright.estimation import EstimationSettings, PanoramaBank, estimate
 from shapewright.mesh.file import parse_mesh
 from shapewright.modeling import ProceduralModel, Recorder, compile_model
-from workers.context import JobContext
+from workers.context import JobContext, WorkerProgress
 from workers.runner import Runner
 from workers.settings import WorkerSettings
 from workers.stopping import StopNotice
@@ -308,14 +309,17 @@ def test_a_training_with_one_class_more_computes_that_class_alone(site: Site) ->
     assert (other.models("features"), other.models("panoramas")) == (known, set())
 
 
-def test_a_cancelled_training_goes_on_where_it_was(site: Site) -> None:
+def test_a_cancelled_training_goes_on_where_it_was(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
     first = queue_training(site, [brick(), rod()])
+    begun: list[WorkerProgress] = []
+    enter = WorkerProgress.__enter__
+    monkeypatch.setattr(WorkerProgress, "__enter__", lambda self: begun.append(self) or enter(self))
 
     def cancel(key: str) -> None:
         if key.startswith("features/"):
             with site.database.writing() as session:
                 request_cancel(session, first.job_id, now=now())
-            time.sleep(1.0)  # the heartbeat hears of it
+            wait_until(lambda: begun[-1]._cancelled)  # the heartbeat has heard of it
 
     stopped, rest = Watched(site.artifacts, cancel), Watched(site.artifacts)
     run(site, first.job_id, stopped)

@@ -9,13 +9,13 @@ from service_support import (
     NOWHERE,
     LiveService,
     box,
-    eventually,
     problem,
     running,
     service,
     shared_service,
     tetrahedron,
 )
+from waiting import PATIENCE_S, wait_until
 
 from models_store import catalog
 from models_store.broker import QUEUE
@@ -341,14 +341,14 @@ def test_without_a_broker_the_job_is_accepted_and_stays_queued(tmp_path) -> None
             "artifacts": True,
             "broker": False,
         }
-        eventually(lambda: "shapewright_wakeups_lost_total 3.0" in live.client.get("/metrics").text)
+        wait_until(lambda: "shapewright_wakeups_lost_total 3.0" in live.client.get("/metrics").text)
 
 
 def test_a_wakeup_is_in_the_queue_when_the_job_is_accepted(service: LiveService) -> None:
     service.client.post("/v1/classifiers", json={"model_ids": two_models(service)}).raise_for_status()
     with service.services.celery.connection_for_read() as connection:
         queue = connection.SimpleQueue(QUEUE)
-        kinds = [queue.get(timeout=5).headers["task"] for _ in range(3)]
+        kinds = [queue.get(timeout=PATIENCE_S).headers["task"] for _ in range(3)]
         queue.close()
     assert sorted(kinds) == [
         "shapewright.render_thumbnail",

@@ -7,6 +7,7 @@ from typing import Final, Literal
 import numpy as np
 from jaxtyping import Float
 
+from shapewright.errors import EstimationError
 from shapewright.estimation.fast.branches import other_choices, other_poses
 from shapewright.estimation.fast.candidate import Candidate
 from shapewright.estimation.fast.fitted_model import COARSE, FINE, FittedModel
@@ -48,6 +49,8 @@ _BRANCHINGS: Final = 4
 _CHILDREN: Final = 2
 _GAIN: Final = 1e-4
 _ROUNDS, _ROUND_GAIN = 15, 1e-3
+_WORTH_POLISHING: Final = 1.25
+"""Candidates whose z-buffer distance is larger than the best one's by this factor are not polished."""
 _EXACT: Final = 0.06
 """Z-buffer distance below which surfaces alone are tried, too."""
 
@@ -142,6 +145,8 @@ class Search:
             if group:
                 self._keep("start", outline_distance(self.target, group[0]))
         everything = sorted((one for group in groups for one in group), key=lambda one: one.misfit)
+        if not everything:
+            raise EstimationError("no instance of the models has an area", where="models")
         candidates = spread(everything, STARTS, STARTS_OF_EACH)
         self.finished.add("start")
         return candidates
@@ -201,7 +206,8 @@ class Search:
         if leader.zbuffer < _EXACT:
             pure = fine_distance(self.target, self._fit(leader, _PURE))
             candidates = _sorted([pure, fine_distance(self.target, leader), *candidates[1:]])
-        polished = self._pool.map(self._polished, candidates)
+        limit = _WORTH_POLISHING * candidates[0].zbuffer
+        polished = self._pool.map(self._polished, [one for one in candidates if one.zbuffer <= limit])
         self.kept += [*polished, *others]
         for one in polished:
             self._keep("polish", one)
