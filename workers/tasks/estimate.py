@@ -5,13 +5,12 @@ from typing import TYPE_CHECKING, cast
 
 from models_store import catalog
 from shapewright.errors import Cancelled
-from shapewright.progress import Progress
 from workers.context import JobContext, Outcome
 from workers.finite import finite
-from workers.stored.banks import new_bank, stored_bank
+from workers.stored.banks import bank_of
 
 if TYPE_CHECKING:
-    from shapewright.estimation import Estimation, InstanceGenerator, PanoramaBank
+    from shapewright.estimation import Estimation
     from shapewright.estimation.query import Axis, Unit
 
 
@@ -27,14 +26,11 @@ def estimate(context: JobContext) -> Outcome:
     settings = EstimationSettings.from_dict(row.settings)
     model_ids = [str(row.model_id)] if row.model_ids is None else row.model_ids
 
-    def banks(compiled: "InstanceGenerator", progress: Progress) -> "PanoramaBank":
-        return stored_bank(context, compiled, settings) or new_bank(context, compiled, settings, progress)
-
     context.progress.report(0.0, "reading the mesh")
     query = Query(context.load_query(row.mesh_id), units=cast("Unit | None", row.units), up=cast("Axis | None", row.up))
     generators = [compile_model(context.load_model(model_id)) for model_id in model_ids]
     try:
-        found = find(query, generators, settings, progress=context.progress, banks=banks)
+        found = find(query, generators, settings, progress=context.progress, banks=partial(bank_of, context, settings))
         return _outcome(context, identifier, found)
     except EstimationCancelled as cancelled:
         if cancelled.best is None:
