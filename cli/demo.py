@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cli.console import AsJson, print_json, shown_progress, stderr, stdout
-from cli.report import parameter_table, probability_table
+from cli.estimation_text import print_estimation
+from cli.report import probability_table
 from cli.sources import read_object
 from models_store.library.shipped import list_classes, list_further_classes, list_shipped
 from shapewright.errors import ModelError, ShapewrightError
@@ -203,17 +204,10 @@ def _walk(
     )
     fit = estimation["result"]
     model = next(model for model in models if model["id"] == estimation["model_id"])
-    tried = ", ".join(f"{one['model_name']} {one['panorama']:.3g}" for one in fit["models_tried"])
-    console.print(f"   fitted with the model {model['name']} ({fit['seconds']:.1f} s), of: {tried}")
 
     _step(console, 5, "what was found")
     console.print(probability_table(found["probabilities"]))
-    console.print(parameter_table(fit["parameters"]))
-    distances = fit["distances"]
-    console.print(
-        f"   layer {fit['layer']} · panorama {distances['panorama']:.4g} · surface {distances['surface']:.4g} "
-        f"· z-buffer {distances['zbuffer']:.4g} · {fit['seconds']:.1f} s"
-    )
+    print_estimation(console, fit, seconds=fit["seconds"])
     picture, glb = _write_files(client, uploaded["id"], estimation, output, query.stem)
     console.print(f"   {picture}\n   {glb}")
     return {
@@ -226,7 +220,7 @@ def _walk(
         "model": model["name"],
         "layer": fit["layer"],
         "parameters": fit["parameters"],
-        "distances": distances,
+        "distances": fit["distances"],
         "seconds": {"classification": found["seconds"], "estimation": fit["seconds"]},
         "picture_file": str(picture),
         "mesh_file": str(glb),

@@ -1,23 +1,32 @@
 """`shapewright estimate`: which parameter values rebuild this mesh?"""
 
+import os
 import time
-from dataclasses import asdict
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
 from cli.console import AsJson, print_json, shown_progress, stdout
-from cli.report import parameter_table
+from cli.estimation_text import print_estimation
 from cli.sources import load_class, load_compiled, read_object
 from shapewright.errors import EstimationError, MeshFileError
+from shapewright.progress import LimitedProgress
 
 if TYPE_CHECKING:
-    from shapewright.estimation import Estimation
+    from shapewright.estimation.query import Axis, Unit
+
+UNITS = ("mm", "cm", "m", "in")
+AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
+ESTIMATORS = ("fast", "reference")
 
 
 def estimate(
-    mesh: Annotated[Path, typer.Argument(help="Mesh file: .off, .obj, .ply, .stl, .glb.", show_default=False)],
+    mesh: Annotated[
+        Path,
+        typer.Argument(help="Mesh file (.off, .obj, .ply, .stl, .glb), or a folder of them.", show_default=False),
+    ],
     models: Annotated[
         list[str] | None,
         typer.Option(
@@ -32,7 +41,11 @@ def estimate(
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="Write the fitted mesh (.glb, .obj, .off, .ply, .stl)."),
+        typer.Option(
+            "--output",
+            "-o",
+            help="Write the fitted mesh (.glb, .obj, .off, .ply, .stl), or a folder's table (.parquet, .csv, .jsonl).",
+        ),
     ] = None,
     picture: Annotated[
         Path | None, typer.Option(help="Write a PNG: the query, the fitted mesh, and both in one.")
@@ -46,39 +59,114 @@ def estimate(
     seed: Annotated[
         int | None, typer.Option(min=0, help="Seed of all random choices (default: 0).", show_default=False)
     ] = None,
+    units: Annotated[
+        str | None,
+        typer.Option(
+            help=f"Unit of the file's coordinates ({', '.join(UNITS)}): the scale is known, and lengths come in it.",
+            show_default=False,
+        ),
+    ] = None,
+    up: Annotated[
+        str | None,
+        typer.Option(help=f"The axis of the file that points up: {', '.join(AXES)}.", show_default=False),
+    ] = None,
+    estimator: Annotated[
+        str | None,
+        typer.Option(help=f"Who searches: {', '.join(ESTIMATORS)}. The reference is the paper.", show_default=False),
+    ] = None,
+    time_limit_s: Annotated[
+        float | None,
+        typer.Option(
+            "--time-limit",
+            min=0.0,
+            metavar="SECONDS",
+            help="Stop after so many seconds, of a folder for each mesh, with the best answer until then.",
+            show_default=False,
+        ),
+    ] = None,
     settings_file: Annotated[
         Path | None, typer.Option("--settings", help='JSON file with any of the settings, e.g. {"image_size": 128}.')
+    ] = None,
+    sort: Annotated[
+        str | None,
+        typer.Option(
+            metavar="COLUMN[/COLUMN]",
+            help="Folder: sort the rows by a parameter or a ratio, e.g. stem_length/bowl_depth.",
+            show_default=False,
+        ),
+    ] = None,
+    descending: Annotated[bool, typer.Option("--descending", help="Folder: the largest first.")] = False,
+    strip: Annotated[
+        Path | None,
+        typer.Option(help="Folder: write a PNG of the sorted meshes above their fits.", show_default=False),
+    ] = None,
+    jobs: Annotated[
+        int | None,
+        typer.Option(
+            min=1, max=256, help="Folder: processes (default: as many as there are cores).", show_default=False
+        ),
     ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Estimate the parameters of a procedural model, or of the best one of a class, so that it rebuilds a mesh.
 
     The fitted mesh is written in the coordinates of your file, so that both lie on top of each other. The default
-    settings are the method's own and take minutes; --quick is for a first look.
+    settings are the method's own and take minutes; --quick is for a first look, --time-limit for a fixed wait. Say the
+    unit of your file if you know it: without it the size of the mesh says nothing, only proportions do.
+
+    A folder gives a table with one row for each mesh below it; a mesh that cannot be estimated is a row with the
+    reason. Running the command again estimates only what has no row yet.
 
     Examples:
 
       [bold]shapewright estimate goblet.ply --model glass_with_stem[/]
-      [bold]shapewright estimate goblet.ply --class glass_with_stem[/]
+      [bold]shapewright estimate goblet.ply --class glass_with_stem --units mm --up +z[/]
       [bold]shapewright estimate goblet.ply -m glass_with_stem --quick -o fitted.glb --picture fit.png[/]
+      [bold]shapewright estimate DIR --class glass_with_stem -o glasses.parquet[/]
+      [bold]shapewright estimate DIR --class glass_with_stem -o t.csv --sort stem_length/bowl_depth --strip s.png[/]
     """
-    _refuse_endings(output, picture)
+    if not mesh.is_dir():
+        _refuse_endings(output, picture)
     if (class_name is None) == (not models):
         raise typer.BadParameter("name models or a class", param_hint="--model")
-    from shapewright.estimation import EstimationSettings
+    from shapewright.estimation import EstimationCancelled, EstimationSettings, Query
     from shapewright.estimation import estimate as run_estimation
     from shapewright.mesh.file import load_mesh
 
-    generators = load_class(class_name) if class_name is not None else [load_compiled(model) for model in models or []]
-    query = load_mesh(mesh, in_child=True)
     chosen = EstimationSettings.quick().to_dict() if quick else {}
     if settings_file is not None:
         chosen |= read_object(settings_file)
-    chosen |= {name: value for name, value in {"samples": samples, "seed": seed}.items() if value is not None}
+    given = {"samples": samples, "seed": seed, "estimator": estimator}
+    chosen |= {name: value for name, value in given.items() if value is not None}
     settings = EstimationSettings.from_dict(chosen)
+    _one_of(units, UNITS, "--units")
+    _one_of(up, AXES, "--up")
+    generators = load_class(class_name) if class_name is not None else [load_compiled(model) for model in models or []]
+    unit, axis = cast("Unit | None", units), cast("Axis | None", up)
+    if mesh.is_dir():
+        from cli.estimate_folder import FolderRequest, estimate_folder
+
+        if output is None or picture is not None:
+            raise typer.BadParameter("a folder needs a table to write, and has no --picture", param_hint="--output")
+        limits = (time_limit_s, jobs or len(os.sched_getaffinity(0)))
+        request = FolderRequest(mesh, generators, settings, unit, axis, output, sort, descending, strip, *limits)
+        estimate_folder(request, as_json=as_json)
+        return
+    if sort is not None or strip is not None:
+        raise typer.BadParameter("are for a folder of meshes", param_hint="--sort, --strip")
+    mesh_read = load_mesh(mesh, in_child=True)
+    query = Query(mesh_read, units=unit, up=axis)
     started_s = time.monotonic()
-    with shown_progress("estimating") as progress:
-        estimation = run_estimation(query, generators, settings, progress=progress)
+    with shown_progress("estimating") as shown:
+        progress = LimitedProgress(
+            shown, lambda: time_limit_s is not None and time.monotonic() - started_s >= time_limit_s
+        )
+        try:
+            estimation = run_estimation(query, generators, settings, progress=progress)
+        except EstimationCancelled as cancelled:
+            if cancelled.best is None:
+                raise EstimationError("the time was over before anything was found", where="--time-limit") from None
+            estimation = cancelled.best
     seconds = time.monotonic() - started_s
     for path in (output, picture):
         if path is not None:
@@ -88,19 +176,13 @@ def estimate(
     if picture is not None:
         from cli.picture import save_side_by_side
 
-        save_side_by_side(query, estimation.mesh, picture, model_to_query=estimation.pose.rotation)
+        save_side_by_side(mesh_read, estimation.mesh, picture, model_to_query=estimation.pose.rotation)
+    document = estimation.to_dict()
     if as_json:
         files = {"mesh_file": output and str(output), "picture_file": picture and str(picture)}
-        print_json(
-            {
-                "query": str(mesh),
-                **estimation.to_dict(),
-                **files,
-                "seconds": round(seconds, 3),
-            }
-        )
+        print_json({"query": str(mesh), **document, **files, "seconds": round(seconds, 3)})
         return
-    _print(estimation, seconds)
+    print_estimation(stdout(), document, seconds=seconds)
     for path in (output, picture):
         if path is not None:
             typer.echo(f"written: {path}")
@@ -113,11 +195,6 @@ def _refuse_endings(output: Path | None, picture: Path | None) -> None:
         raise EstimationError("pictures are written as .png", where=str(picture))
 
 
-def _print(estimation: "Estimation", seconds: float) -> None:
-    console = stdout()
-    console.print(parameter_table(asdict(parameter) for parameter in estimation.parameters))
-    distances = estimation.distances
-    console.print(
-        f"layer {estimation.layer} · distances: panorama {distances.panorama:.4g}, "
-        f"surface {distances.surface:.4g}, z-buffer {distances.zbuffer:.4g} · {seconds:.1f} s"
-    )
+def _one_of(value: str | None, known: Iterable[str], option: str) -> None:
+    if value is not None and value not in known:
+        raise typer.BadParameter(f"expected one of {', '.join(known)}, got {value!r}", param_hint=option)

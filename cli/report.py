@@ -11,32 +11,61 @@ if TYPE_CHECKING:
 BAR_CELLS = 14
 
 
+STATUS_TEXTS = {
+    "determined": "determined",
+    "determined_up_to_scale": "up to scale",
+    "not_determined": "not determined",
+    "inactive": "inactive",
+    "at_range_end": "at the end of its range",
+}
+
+
 def parameter_table(parameters: Iterable[Mapping[str, Any]]) -> "Table":
     """Return a table of estimated parameters: label, measure or option, x, range, and where x lies in its range.
 
+    If an estimator judges, there are columns of what it says: where the value lies with a probability of 90 %, and
+    whether the mesh determines it.
+
     Args:
         parameters: mappings with ``label``, ``unit``, ``value`` (x), ``base_value``, ``minimum``, ``maximum``,
-            ``option`` and ``active``.
+            ``option`` and ``active``, perhaps with ``status`` and ``interval``.
     """
     from rich.markup import escape
     from rich.table import Table
 
-    table = Table("parameter", "measure", "x", "range of x", "in the range")
+    listed = list(parameters)
+    judged = any(parameter.get("status") for parameter in listed)
+    verdicts = ("90 % interval", "known") if judged else ()
+    table = Table("parameter", "measure", *verdicts, "x", "range of x", "in the range")
     for column in table.columns[1:]:
         column.no_wrap = True
-    for parameter in parameters:
+    for parameter in listed:
         label = escape(parameter["label"])
         if not parameter["active"]:
-            table.add_row(label, "inactive", "", "", "", style="dim")
+            table.add_row(label, "inactive", style="dim")
             continue
+        known = (_interval_text(parameter), STATUS_TEXTS.get(parameter.get("status") or "", "")) if judged else ()
         value, low, high = parameter["value"], parameter["minimum"], parameter["maximum"]
         if parameter["option"] is not None:
-            table.add_row(label, escape(parameter["option"]), f"{value:g}", f"{low:g} … {high:g}", "")
+            table.add_row(label, escape(parameter["option"]), *known, f"{value:g}", f"{low:g} … {high:g}", "")
             continue
         base = parameter["base_value"]
         measure = "" if base is None else escape(f"{value * base:.4g} {parameter['unit'] or ''}".strip())
-        table.add_row(label, measure, f"{value:.3f}", f"{low:.3g} … {high:.3g}", position_bar(value, low, high))
+        bar = position_bar(value, low, high)
+        style = "dim" if parameter.get("status") == "not_determined" else None
+        table.add_row(label, measure, *known, f"{value:.3f}", f"{low:.3g} … {high:.3g}", bar, style=style)
     return table
+
+
+def _interval_text(parameter: Mapping[str, Any]) -> str:
+    """Say where the displayed value lies, e.g. ``71.2 … 74.0 mm``."""
+    interval = parameter.get("interval")
+    if interval is None:
+        return ""
+    base = parameter["base_value"]
+    low, high = sorted(x * (1.0 if base is None else base) for x in interval)
+    unit = "" if base is None else f" {parameter['unit'] or ''}"
+    return f"{low:.3g} … {high:.3g}{unit}".rstrip()
 
 
 def model_table(model: "ProceduralModel") -> "Table":

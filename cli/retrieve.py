@@ -16,10 +16,8 @@ from shapewright.errors import ClassifierError, MeshFileError, ModelError, Rende
 from shapewright.progress import PartialProgress, Progress
 
 if TYPE_CHECKING:
-    import numpy as np
-    from jaxtyping import Float32
-
     from shapewright.classification import ClassQuery, RankedMesh
+    from shapewright.estimation import InstanceGenerator, PanoramaBank
     from shapewright.modeling import CompiledModel
 
 
@@ -198,7 +196,7 @@ def _class_query(
     progress: Progress,
     class_name: str | None,
 ) -> "ClassQuery":
-    from shapewright.classification import ClassQuery, gather_instances
+    from shapewright.classification import ClassQuery, gather_instances, instances_of_each
     from shapewright.evaluation.descriptor_cache import BankRequest, DescriptorCache
 
     wanted = class_name if class_name is not None else models[0].model.class_name
@@ -206,10 +204,14 @@ def _class_query(
         return ClassQuery(wanted)
     cache = DescriptorCache(cache_folder(None, "retrieval"))
 
-    def bank_of(compiled: "CompiledModel", count: int, part: Progress) -> "Float32[np.ndarray, 'M D']":
-        return cache.bank(BankRequest(compiled, count, seed), part).descriptors
+    count = instances_of_each(models, instances)
 
-    return ClassQuery(wanted, gather_instances(models, bank_of, instances=instances, progress=progress))
+    by_digest = {one.model.digest: one for one in models}
+
+    def banks(generator: "InstanceGenerator", part: Progress) -> "PanoramaBank":
+        return cache.bank(BankRequest(by_digest[generator.model.digest], count, seed), part)
+
+    return ClassQuery(wanted, gather_instances(models, banks if count else None, progress=progress))
 
 
 def _first_reason(indexed: IndexedFiles, files: list[Path]) -> str:

@@ -15,8 +15,8 @@ _LARGEST: Final = np.finfo(np.float32).max
 """GLB files hold float32."""
 
 
-class InstanceGenerator:
-    """Makes GLB files of the instances of one model; may be used by several threads."""
+class InstanceWriter:
+    """Writes the instances of one model as GLB; may be used by several threads."""
 
     def __init__(self, model: ProceduralModel, max_corners: int) -> None:
         """Compile the model.
@@ -86,10 +86,10 @@ class CompiledModels:
 
     def __init__(self, size: int) -> None:
         self._size = size
-        self._kept: OrderedDict[str, InstanceGenerator] = OrderedDict()
+        self._kept: OrderedDict[str, InstanceWriter] = OrderedDict()
         self._lock = threading.Lock()
 
-    def get(self, model_id: str, make: Callable[[], InstanceGenerator]) -> InstanceGenerator:
+    def get(self, model_id: str, make: Callable[[], InstanceWriter]) -> InstanceWriter:
         """The generator of a model; ``make`` is called if it is not kept."""
         with self._lock:
             if model_id in self._kept:
@@ -99,7 +99,7 @@ class CompiledModels:
         self.keep(model_id, generator)
         return generator
 
-    def keep(self, model_id: str, generator: InstanceGenerator) -> None:
+    def keep(self, model_id: str, generator: InstanceWriter) -> None:
         """Keep a generator, in place of the one that was not used for longest."""
         with self._lock:
             self._kept[model_id] = generator

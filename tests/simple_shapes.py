@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from shapewright.mesh import TriangleMesh
 
@@ -82,6 +82,27 @@ class BoxModel:
         self.model = NamedModel(name, name, hashlib.sha256(name.encode()).hexdigest())
         self.parts = np.array(parts, dtype=np.float64)
 
+    @property
+    def minimum(self) -> Float[np.ndarray, " P"]:
+        return np.full(3 * len(self.parts), 0.6)
+
+    @property
+    def maximum(self) -> Float[np.ndarray, " P"]:
+        return np.full(3 * len(self.parts), 1.6)
+
+    @property
+    def space(self) -> "BoxModel":
+        return self
+
+    def settle(self, values: Float[np.ndarray, "B P"]) -> Float[np.ndarray, "B P"]:
+        return np.clip(values, self.minimum, self.maximum)
+
+    def surface_parts(self, steps: int = 2) -> Int[np.ndarray, " V"]:
+        return np.full(8 * len(self.parts), -1)
+
+    def parts_present(self, values: Float[np.ndarray, "B P"]) -> Bool[np.ndarray, "B N"]:
+        return np.ones((len(values), 0), dtype=bool)
+
     def random_values(self, rng: np.random.Generator, count: int) -> Float[np.ndarray, "B P"]:
         return rng.uniform(0.6, 1.6, (count, 3 * len(self.parts)))
 
@@ -96,7 +117,7 @@ class BoxModel:
     def surface_triangles(self, steps: int = 2) -> Int[np.ndarray, "F 3"]:
         return np.concatenate([BOX_FACES + 8 * part for part in range(len(self.parts))])
 
-    def instance(self, values: Float[np.ndarray, " P"]) -> TriangleMesh:
+    def instance(self, values: Float[np.ndarray, " P"], steps: int = 2) -> TriangleMesh:
         return TriangleMesh(self.surface_points(values[None])[0], self.surface_triangles())
 
 

@@ -23,6 +23,9 @@ def request_estimation(
     settings: dict[str, Any],
     *,
     class_name: str | None = None,
+    units: str | None = None,
+    up: str | None = None,
+    time_limit_s: float | None = None,
     now: datetime,
     max_attempts: int = 3,
 ) -> EstimationRow:
@@ -34,6 +37,9 @@ def request_estimation(
         model_id: the procedural model that shall rebuild it; ``None`` leaves the choice to the estimation.
         settings: fields of :class:`shapewright.estimation.EstimationSettings` that differ from the default.
         class_name: without a model, the class whose models (as they are now) are tried.
+        units: unit of the mesh's coordinates, as :class:`shapewright.estimation.Query` has it.
+        up: axis of the mesh's file that points up.
+        time_limit_s: seconds after which the best answer until then is taken.
         now: the time, with a zone.
         max_attempts: of the job.
 
@@ -58,6 +64,9 @@ def request_estimation(
         model_id=model_id,
         class_name=None if class_name is None else storable(class_name),
         model_ids=model_ids,
+        units=units,
+        up=up,
+        time_limit_s=time_limit_s,
         settings=settings,
         created_at=now,
     )
@@ -67,14 +76,18 @@ def request_estimation(
 
 
 def record_estimation(
-    session: Session, identifier: str, result: dict[str, Any], mesh_key: str | None, model_id: str | None = None
+    session: Session,
+    identifier: str,
+    result: dict[str, Any],
+    mesh_key: str | None,
+    residuals_key: str | None = None,
 ) -> None:
-    """Write the parameter values, and for a class which model they belong to; in the transaction that ends the job."""
+    """Write the parameter values and which model they belong to; in the transaction that ends the job."""
     row = get_estimation(session, identifier)
-    if model_id is not None:
-        row.model_id = model_id
+    row.model_id = result["model"]["id"]
     row.result = result
     row.mesh_key = mesh_key
+    row.residuals_key = residuals_key
 
 
 def get_estimation(session: Session, identifier: str) -> EstimationRow:

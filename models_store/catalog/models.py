@@ -104,6 +104,7 @@ def _parameter(parameter: "Parameter") -> dict[str, Any]:
         "label": storable(parameter.label),
         "unit": None if parameter.unit is None else storable(parameter.unit),
         "base_value": parameter.base_value,
+        "kind": parameter.kind,
         "minimum": parameter.minimum,
         "maximum": parameter.maximum,
         "default": 1.0,

@@ -9,7 +9,7 @@ from fastapi import APIRouter, BackgroundTasks, Depends, Query, Request, Respons
 
 from models_store import catalog
 from models_store.tables import JobRow, ModelRow
-from service.compiled_models import InstanceGenerator
+from service.compiled_models import InstanceWriter
 from service.conditional import immutable_response
 from service.dependencies import CursorQuery, IdPath, LimitQuery, Services, ServicesDep, now, require_json
 from service.errors import Problem, ProblemError
@@ -58,7 +58,7 @@ def _add(services: Services, body: bytes) -> tuple[ModelRow, JobRow | None]:
         identifier = model.digest
     except UnicodeEncodeError as error:
         raise ModelError("half of a surrogate pair is no text", where=f"character {error.start}") from None
-    generator = InstanceGenerator(model, services.settings.max_instance_corners)
+    generator = InstanceWriter(model, services.settings.max_instance_corners)
     generator.check_base_instance()
     with services.database.writing() as session:
         row, is_new = catalog.add_model(session, model, now=now())
@@ -129,7 +129,7 @@ async def create_instance(services: ServicesDep, id: IdPath, body: InstanceIn) -
     return Response(content, media_type=glb.MEDIA_TYPE, headers=headers)
 
 
-def _load(services: Services, model_id: str) -> InstanceGenerator:
+def _load(services: Services, model_id: str) -> InstanceWriter:
     with services.database.reading() as session:
         document = catalog.get_model(session, model_id).document
-    return InstanceGenerator(ProceduralModel.from_json(document), services.settings.max_instance_corners)
+    return InstanceWriter(ProceduralModel.from_json(document), services.settings.max_instance_corners)

@@ -40,6 +40,9 @@ class ParameterOut(OutBody):
     label: str
     unit: str | None
     base_value: float | None = Field(description="Displayed value of the base model; null if x itself is shown.")
+    kind: Literal["length", "angle", "ratio"] | None = Field(
+        default=None, description="What the displayed value is; null if the author does not say, and of choices."
+    )
     minimum: float = Field(description="Smallest x.")
     maximum: float = Field(description="Largest x.")
     default: float = Field(description="x of the base model: always 1.")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from shapewright.classification.array_store import ArrayStore, FolderStore, MemoryStore
     from shapewright.classification.backbone import BACKBONES, Backbone, load_backbone
-    from shapewright.classification.class_instances import gather_instances
+    from shapewright.classification.class_instances import gather_instances, instances_of_each
     from shapewright.classification.classifier import (
         Classification,
         Classifier,
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from shapewright.classification.indexing import Indexed, SkippedMesh, index_meshes, look_at
     from shapewright.classification.retrieval import ClassQuery, MeshQuery, RankedMesh, rank
     from shapewright.classification.settings import TrainingSettings
-    from shapewright.classification.sources import InstanceGenerator
     from shapewright.classification.training import TrainedClassifier, train_classifier
 
 _HOMES = {
@@ -39,7 +38,6 @@ _HOMES = {
     "FeatureExtractor": "features",
     "FolderStore": "array_store",
     "Indexed": "indexing",
-    "InstanceGenerator": "sources",
     "MemoryStore": "array_store",
     "MeshQuery": "retrieval",
     "RankedMesh": "retrieval",
@@ -50,6 +48,7 @@ _HOMES = {
     "exemplars_file": "classifier",
     "files_digest": "classifier",
     "gather_instances": "class_instances",
+    "instances_of_each": "class_instances",
     "index_meshes": "indexing",
     "load_backbone": "backbone",
     "load_classifier": "classifier",
@@ -71,7 +70,6 @@ __all__ = [
     "FeatureExtractor",
     "FolderStore",
     "Indexed",
-    "InstanceGenerator",
     "MemoryStore",
     "MeshQuery",
     "RankedMesh",
@@ -82,6 +80,7 @@ __all__ = [
     "files_digest",
     "gather_instances",
     "index_meshes",
+    "instances_of_each",
     "load_backbone",
     "load_classifier",
     "look_at",

@@ -27,9 +27,10 @@ from shapewright.classification.file_format import (
     OPEN_PROBABILITIES,
     PROBABILITIES,
 )
-from shapewright.classification.synthesis import FITTED_CLASSES, BatchGenerator, Fit, fit_class
+from shapewright.classification.synthesis import FITTED_CLASSES, Fit, fit_class
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor
 from shapewright.errors import ClassifierError
+from shapewright.estimation.generator import InstanceGenerator
 from shapewright.mesh import TriangleMesh
 from shapewright.rendering.images import render_images
 from shapewright.rendering.styles import FRAMINGS, STYLES
@@ -165,7 +166,7 @@ class Classifier:
         *,
         views: int = DEFAULT_VIEWS,
         rng: np.random.Generator | None = None,
-        models: Mapping[str, BatchGenerator] | None = None,
+        models: Mapping[str, InstanceGenerator] | None = None,
     ) -> Classification:
         """Draw a mesh from several sides, average the class probabilities (paper section 3.2), compare its geometry.
 

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from shapewright.errors import ClassifierError
-from shapewright.mapped_arrays import read_arrays, read_header, write_arrays
+from shapewright.mapped_arrays import read_arrays, write_arrays
 
 FORMAT: Final = "shapewright-collection-index"
 VERSION: Final = 1
@@ -43,10 +43,14 @@ class CollectionIndex:
     descriptors: Float32[np.ndarray, "N D"]
 
     def __post_init__(self) -> None:
+        from shapewright.distances.panorama import DESCRIPTOR_SIZE
+
         count, width = len(self.names), len(self.class_names)
         shapes = (self.probabilities.shape, self.picture_probabilities.shape, self.known.shape)
         if shapes != ((count, width), (count, width), (count,)) or len(self.descriptors) != count:
             raise ClassifierError(f"the arrays are not of {count} meshes and {width} classes", where="index")
+        if self.descriptors.shape[1] != DESCRIPTOR_SIZE:
+            raise ClassifierError("the descriptors are of another size", where="index")
         if len(set(self.names)) != count:
             raise ClassifierError("a mesh comes twice", where="index")
 
@@ -63,13 +67,9 @@ class CollectionIndex:
         return cls((), tuple(class_names), classifier_digest, none, none, known, descriptors)
 
     def check_fits(self, class_names: Sequence[str], classifier_digest: str) -> None:
-        """Raise ClassifierError unless the index was made with this classifier, and this version of the descriptor."""
-        from shapewright.distances.panorama import DESCRIPTOR_SIZE
-
+        """Raise ClassifierError unless the index was made with this classifier."""
         if self.classifier_digest != classifier_digest or self.class_names != tuple(class_names):
             raise ClassifierError("the index was made with another classifier", where="index")
-        if self.descriptors.shape[1] != DESCRIPTOR_SIZE:
-            raise ClassifierError("the index was made by another version of the descriptor", where="index")
 
     def taken(self, rows: Sequence[int], names: Sequence[str] | None = None) -> "CollectionIndex":
         """Make an index of some of the meshes, in this order and with new names if given; a row may come twice."""
@@ -114,33 +114,36 @@ class CollectionIndex:
         Raises:
             OSError: the file cannot be written.
         """
-        header = {
-            "format": FORMAT,
-            "version": VERSION,
+        from shapewright.distances.descriptor_files import descriptor_header
+
+        rest = {
             "names": self.names,
             "class_names": self.class_names,
             "classifier_digest": self.classifier_digest,
         }
-        write_arrays(path, header, {name: getattr(self, name) for name in _ARRAYS})
+        write_arrays(path, descriptor_header(FORMAT, VERSION, rest), {name: getattr(self, name) for name in _ARRAYS})
 
     @classmethod
     def load(cls, path: str | Path, *, memory_map: bool = True) -> "CollectionIndex":
         """Read an index; with ``memory_map`` the arrays stay in the file and are read when used.
 
         Raises:
-            ClassifierError: the file is no index, is damaged, or is of an unknown version.
+            ClassifierError: the file is no index, is damaged, or is of another version of the format or of the
+                descriptor.
             OSError: the file cannot be opened.
         """
+        from shapewright.distances.descriptor_files import OutdatedFileError, read_descriptor_header
+
         source = Path(path)
         try:
-            header = read_header(source)
-            if header["format"] != FORMAT or header["version"] != VERSION:
-                raise ClassifierError("this version of the index's format is unknown", where=source.name)
+            header = read_descriptor_header(source, FORMAT, VERSION)
             arrays = read_arrays(source, _ARRAYS, memory_map=memory_map)
             if any(array.dtype != np.float32 for array in arrays) or arrays[-1].ndim != 2:
                 raise ValueError("its arrays are of an unknown kind")
             names, class_names = (tuple(str(name) for name in header[key]) for key in ("names", "class_names"))
             return cls(names, class_names, str(header["classifier_digest"]), *arrays)
+        except OutdatedFileError as error:
+            raise ClassifierError(str(error), where=source.name) from error
         except (KeyError, ValueError, TypeError) as error:
             raise ClassifierError(
                 f"the file is no index of meshes or is damaged: {error}", where=source.name

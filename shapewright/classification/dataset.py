@@ -17,12 +17,12 @@ from shapewright.classification.settings import TrainingSettings
 from shapewright.classification.sources import (
     AssemblySource,
     DistortedSource,
-    InstanceGenerator,
     MixedSource,
     ModelSource,
     Source,
 )
 from shapewright.errors import ClassifierError
+from shapewright.estimation.generator import InstanceGenerator
 
 OTHERS: Final = 8
 """Fewer models of no class share the objects as so many would: a model that comes or goes changes no other's."""

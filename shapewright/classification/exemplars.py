@@ -12,10 +12,12 @@ import numpy as np
 from jaxtyping import Float, Float32, Int
 
 from shapewright.classification.dataset import Plan
-from shapewright.classification.sources import SERIES, InstanceGenerator, ModelSource
-from shapewright.distances.panorama import DESCRIPTOR_SIZE, VERSION, PanoramaDescriptor, panorama_distances
+from shapewright.classification.sources import SERIES, ModelSource
+from shapewright.distances.descriptor_files import OutdatedFileError, descriptor_header, read_descriptor_header
+from shapewright.distances.panorama import DESCRIPTOR_SIZE, PanoramaDescriptor, panorama_distances
 from shapewright.errors import ClassifierError
-from shapewright.mapped_arrays import read_arrays, read_header, write_arrays
+from shapewright.estimation.generator import InstanceGenerator
+from shapewright.mapped_arrays import read_arrays, write_arrays
 
 FORMAT: Final = "shapewright-exemplars"
 _VERSION: Final = 1
@@ -103,10 +105,7 @@ class Exemplars:
         Raises:
             OSError: the file cannot be written.
         """
-        header = {
-            "format": FORMAT,
-            "version": _VERSION,
-            "descriptor_version": VERSION,
+        rest = {
             "class_names": list(self.class_names),
             "digests": list(self.digests),
             "seed": self.seed,
@@ -118,7 +117,7 @@ class Exemplars:
             "numbers": self.numbers.astype(np.int32),
             "descriptors": self.descriptors.astype(np.float16),
         }
-        write_arrays(path, header, arrays)
+        write_arrays(path, descriptor_header(FORMAT, _VERSION, rest), arrays)
 
     @classmethod
     def load(cls, path: str | Path) -> "Exemplars":
@@ -129,11 +128,7 @@ class Exemplars:
         """
         where = Path(path).name
         try:
-            header = read_header(path)
-            if header.get("format") != FORMAT:
-                raise ClassifierError("the file holds no exemplars", where=where)
-            if (header["version"], header["descriptor_version"]) != (_VERSION, VERSION):
-                raise ClassifierError("the exemplars are of another version; train again", where=where)
+            header = read_descriptor_header(path, FORMAT, _VERSION)
             classes, models, numbers, descriptors = read_arrays(
                 path, ["classes", "models", "numbers", "descriptors"], memory_map=False
             )
@@ -149,6 +144,8 @@ class Exemplars:
             )
         except OSError as error:
             raise ClassifierError(f"cannot be read: {error.strerror}", where=where) from error
+        except OutdatedFileError as error:
+            raise ClassifierError(f"{error}; train again", where=where) from error
         except (ValueError, KeyError, TypeError) as error:
             raise ClassifierError(f"the file holds no exemplars or is damaged: {error}", where=where) from error
 

@@ -13,39 +13,13 @@ import numpy as np
 from jaxtyping import Float
 
 from shapewright.classification import negatives
+from shapewright.estimation.generator import InstanceGenerator
 from shapewright.mesh import TriangleMesh
 
 MESHES_VERSION: Final = 1
 """Raise it when the same model gives other variations for the same generator, or they have other surfaces."""
 SERIES: Final = 64
 """Meshes that one random generator gives at most; the shorter series are beginnings of the longer ones."""
-
-
-@runtime_checkable
-class _Described(Protocol):
-    @property
-    def name(self) -> str: ...
-
-    @property
-    def digest(self) -> str: ...
-
-
-@runtime_checkable
-class InstanceGenerator(Protocol):
-    """What learning needs of a compiled procedural model; :class:`shapewright.modeling.CompiledModel` is one."""
-
-    @property
-    def model(self) -> _Described:
-        """The model: its name and the digest of its document."""
-        ...
-
-    def random_values(self, rng: np.random.Generator, count: int) -> Float[np.ndarray, "B P"]:
-        """Parameter values drawn uniformly within their ranges, what is not active left at the base."""
-        ...
-
-    def instances(self, values: Float[np.ndarray, "B P"], steps: int = 2) -> Iterator[TriangleMesh]:
-        """The subdivided surface of each row, without the parts that it lacks."""
-        ...
 
 
 @runtime_checkable

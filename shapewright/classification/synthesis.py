@@ -1,51 +1,19 @@
-"""Analysis by synthesis: a class is matched by its nearest stored variation and a short fit from there (ours).
-
-The fit draws candidates around the nearest exemplars, evaluates them in one batch, and goes on from the best: a few
-rounds of the cross-entropy method (Rubinstein 1999) with steps that shrink. The panorama distance knows no pose, so
-nothing has to be aligned.
-"""
+"""Analysis by synthesis: a class is matched by its nearest stored variation and a short fit from there (ours)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Final, Protocol, runtime_checkable
+from typing import Any, Final
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float
 
 from shapewright.classification.exemplars import Exemplars
-from shapewright.classification.sources import InstanceGenerator
-from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptors, panorama_distances
+from shapewright.distances.panorama import PanoramaDescriptor
+from shapewright.estimation.generator import InstanceGenerator
+from shapewright.estimation.starts import KEPT, Start, improve_starts
 
 FITTED_CLASSES: Final = 2
 """Most probable classes that are fitted."""
-CANDIDATES: Final = 48
-"""Instances of each round."""
-KEPT: Final = 3
-"""What each round begins from."""
-STEPS: Final = (0.15, 0.08)
-"""Standard deviation of each round, in shares of a parameter's range."""
-_MOVED: Final = 0.4
-"""Share of the parameters that a candidate changes."""
-
-
-@runtime_checkable
-class BatchGenerator(InstanceGenerator, Protocol):
-    """A compiled model that makes batches; :class:`shapewright.modeling.CompiledModel` is one."""
-
-    minimum: Float[np.ndarray, " P"]
-    maximum: Float[np.ndarray, " P"]
-
-    def settle(self, values: Float[np.ndarray, "B P"]) -> Float[np.ndarray, "B P"]:
-        """The rows as they are meant: in their ranges, options whole."""
-        ...
-
-    def surface_points(self, values: Float[np.ndarray, "B P"], steps: int = 2) -> Float[np.ndarray, "B V 3"]:
-        """Vertices of each row's surface."""
-        ...
-
-    def surface_triangles(self, steps: int = 2) -> Int[np.ndarray, "F 3"]:
-        """The triangles that all rows share."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +47,7 @@ def fit_class(
     exemplars: Exemplars,
     distances: Float[np.ndarray, " M"],
     class_number: int,
-    models: Mapping[str, BatchGenerator],
+    models: Mapping[str, InstanceGenerator],
     rng: np.random.Generator,
 ) -> Fit | None:
     """Match one class; ``None`` if the models of its nearest exemplars are not at hand.
@@ -94,31 +62,12 @@ def fit_class(
     """
     rows = np.flatnonzero(exemplars.classes == class_number)
     rows = rows[np.argsort(distances[rows], kind="stable")[:KEPT]]
-    best: list[tuple[float, BatchGenerator, Float[np.ndarray, " P"]]] = []
+    starts = []
     for row in rows:
         generator = models.get(exemplars.digests[exemplars.models[row]])
         if generator is not None:
-            best.append((float(distances[row]), generator, exemplars.values(int(row), generator)))
-    if not best:
+            starts.append(Start(generator, exemplars.values(int(row), generator), float(distances[row])))
+    if not starts:
         return None
-    begun_at = best[0][0]
-    for step in STEPS:
-        found = list(best)
-        for _, generator, values in best:
-            count = CANDIDATES // len(best)
-            candidates = _around(generator, values, step, count, rng)
-            points = generator.surface_points(candidates, exemplars.subdivision_steps)
-            triangles = generator.surface_triangles(exemplars.subdivision_steps)
-            near = panorama_distances(descriptor, panorama_descriptors(points, triangles))
-            found += [(float(near[i]), generator, candidates[i]) for i in range(count)]
-        best = sorted(found, key=lambda one: one[0])[:KEPT]
-    distance, generator, values = best[0]
-    return Fit(generator.model.digest, values, distance, begun_at)
-
-
-def _around(
-    generator: BatchGenerator, values: Float[np.ndarray, " P"], step: float, count: int, rng: np.random.Generator
-) -> Float[np.ndarray, "B P"]:
-    moved = rng.random((count, len(values))) < _MOVED
-    spread = step * (generator.maximum - generator.minimum)
-    return generator.settle(values + moved * rng.normal(size=(count, len(values))) * spread)
+    best = improve_starts(descriptor, starts, exemplars.subdivision_steps, rng)
+    return Fit(best.generator.model.digest, best.values, best.distance, starts[0].distance)

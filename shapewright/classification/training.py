@@ -16,7 +16,7 @@ from shapewright.classification.export import ModelReference, classifier_metadat
 from shapewright.classification.features import FeatureExtractor
 from shapewright.classification.head import Head, train_head
 from shapewright.classification.settings import TrainingSettings
-from shapewright.classification.sources import InstanceGenerator
+from shapewright.estimation.generator import InstanceGenerator
 from shapewright.progress import NULL_PROGRESS, PartialProgress, Progress
 
 IMAGES_SHARE = 0.85

@@ -11,7 +11,7 @@ from jaxtyping import Float, Float32
 from shapewright.errors import Cancelled, EstimationError
 from shapewright.estimation.generator import InstanceGenerator
 from shapewright.estimation.settings import EstimationSettings
-from shapewright.mapped_arrays import read_arrays, read_header, write_arrays
+from shapewright.mapped_arrays import read_arrays, write_arrays
 from shapewright.progress import NULL_PROGRESS, Progress
 
 FORMAT: Final = "shapewright-panorama-bank"
@@ -60,7 +60,7 @@ class PanoramaBank:
             )
         widths = (self.values.shape[1], self.descriptors.shape[1])
         if widths != (len(generator.minimum), DESCRIPTOR_SIZE):
-            raise EstimationError("the bank was built by another version of the descriptor", where="bank")
+            raise EstimationError("the bank does not have the columns of the model and its descriptors", where="bank")
 
     def save(self, path: str | Path) -> None:
         """Write one uncompressed ``.npz`` file, completely or not at all.
@@ -70,29 +70,31 @@ class PanoramaBank:
         Raises:
             OSError: the file cannot be written.
         """
-        header = {
-            "format": FORMAT,
-            "version": VERSION,
-            "model_digest": self.model_digest,
-            "subdivision_steps": self.subdivision_steps,
-        }
-        write_arrays(path, header, {"values": self.values, "descriptors": self.descriptors})
+        from shapewright.distances.descriptor_files import descriptor_header
+
+        rest = {"model_digest": self.model_digest, "subdivision_steps": self.subdivision_steps}
+        write_arrays(
+            path, descriptor_header(FORMAT, VERSION, rest), {"values": self.values, "descriptors": self.descriptors}
+        )
 
     @classmethod
     def load(cls, path: str | Path, *, memory_map: bool = True) -> "PanoramaBank":
         """Read a bank; with ``memory_map`` the arrays stay in the file and are read when used.
 
         Raises:
-            EstimationError: the file is no bank, is damaged, or is of an unknown version.
+            EstimationError: the file is no bank, is damaged, or is of another version of the format or of the
+                descriptor.
             OSError: the file cannot be opened.
         """
+        from shapewright.distances.descriptor_files import OutdatedFileError, read_descriptor_header
+
         source = Path(path)
         try:
-            header = read_header(source)
-            if header["format"] != FORMAT or header["version"] != VERSION:
-                raise EstimationError("this version of the bank's format is unknown", where=source.name)
+            header = read_descriptor_header(source, FORMAT, VERSION)
             values, descriptors = read_arrays(source, ("values", "descriptors"), memory_map=memory_map)
             return cls(values, descriptors, str(header["model_digest"]), int(header["subdivision_steps"]))
+        except OutdatedFileError as error:
+            raise EstimationError(str(error), where=source.name) from error
         except (KeyError, ValueError, TypeError) as error:
             raise EstimationError(f"the file is no bank or is damaged: {error}", where=source.name) from error
 

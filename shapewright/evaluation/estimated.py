@@ -13,8 +13,8 @@ from shapewright.errors import MeshError
 from shapewright.estimation import Distances, Estimation, EstimationSettings, ParameterEstimate, Query, Stage, estimate
 from shapewright.estimation.result import Alternative, Layer, Ratio
 from shapewright.evaluation.datasets import Skipped
-from shapewright.evaluation.in_processes import in_processes
 from shapewright.evaluation.synthetic import Truth
+from shapewright.in_processes import in_processes
 from shapewright.modeling import CompiledModel, ProceduralModel, compile_model
 from shapewright.progress import NULL_PROGRESS, Progress
 
@@ -104,7 +104,7 @@ def estimate_cases(
     models: Mapping[str, CompiledModel],
     settings: EstimationSettings,
     *,
-    estimate_query: EstimateQuery = estimate,
+    estimate_query: EstimateQuery | None = None,
     jobs: int = 1,
     progress: Progress = NULL_PROGRESS,
 ) -> EstimatedQueries:
@@ -115,10 +115,11 @@ def estimate_cases(
         count: how many cases there are, for the progress.
         models: by name; those that the cases name.
         settings: of the estimator.
-        estimate_query: what estimates.
+        estimate_query: what estimates; the library's estimators if not given.
         jobs: processes; with 1 the work is done here. Each has its own compiled models.
         progress: told of every case; may cancel.
     """
+    estimate_query = estimate if estimate_query is None else estimate_query
     outcomes: dict[int, Estimated | Skipped] = {}
     kept: dict[int, tuple[str, str, Truth | None]] = {}
 

@@ -10,10 +10,10 @@ import numpy as np
 from jaxtyping import UInt8
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from shapewright.estimation.rotation_like import rotation_like
 from shapewright.evaluation.coverage import Coverage, Neighbour
 from shapewright.evaluation.datasets import LabelledFile, Skipped, load_each
 from shapewright.evaluation.metrics import ClassCoverage, meshes_of, nearest_class
-from shapewright.evaluation.turned_alike import rotation_like
 from shapewright.mesh import TriangleMesh
 from shapewright.progress import NULL_PROGRESS, Progress
 from shapewright.rendering import render_mesh, three_quarter_view

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from shapewright.rendering.mesh_sheet import LabelledMesh, compose_mesh_sheet
     from shapewright.rendering.pictures import compose_grid, compose_side_by_side, render_mesh
     from shapewright.rendering.residual_pictures import compose_residuals
+    from shapewright.rendering.strip import Pair, compose_strip
     from shapewright.rendering.styles import SCALE_RANGE, STYLES, WINDOW, ImageStyle
     from shapewright.rendering.views import even_views, random_views, spread_views, three_quarter_view
 
@@ -22,11 +23,13 @@ _HOMES = {
     "WINDOW": "styles",
     "ImageStyle": "styles",
     "LabelledMesh": "mesh_sheet",
+    "Pair": "strip",
     "compose_contact_sheet": "contact_sheet",
     "compose_grid": "pictures",
     "compose_mesh_sheet": "mesh_sheet",
     "compose_residuals": "residual_pictures",
     "compose_side_by_side": "pictures",
+    "compose_strip": "strip",
     "context_is_open": "context",
     "even_views": "views",
     "random_views": "views",
@@ -44,11 +47,13 @@ __all__ = [
     "WINDOW",
     "ImageStyle",
     "LabelledMesh",
+    "Pair",
     "compose_contact_sheet",
     "compose_grid",
     "compose_mesh_sheet",
     "compose_residuals",
     "compose_side_by_side",
+    "compose_strip",
     "context_is_open",
     "even_views",
     "random_views",

@@ -26,26 +26,27 @@ _INK, _FAINT, _PAPER = (20, 24, 30), (110, 116, 125), (255, 255, 255)
 
 @dataclass(frozen=True)
 class Cell:
-    """A picture and the two lines below it."""
+    """A picture, as wide as all others of its sheet, and the two lines below it."""
 
     pixels: UInt8[np.ndarray, "H W 3"]
     title: str
     caption: str
 
 
-def check_sheet_size(counts: Sequence[int], size: int, columns: int) -> None:
+def check_sheet_size(counts: Sequence[int], size: int, columns: int, height: int | None = None) -> None:
     """Refuse a sheet that would be too large, before anything is drawn for it.
 
     Args:
         counts: cells of each section.
-        size: pixels a side of each picture.
+        size: width of each picture in pixels.
         columns: pictures in a row.
+        height: of each picture; as its width if not given.
 
     Raises:
         RenderingError: more than MAX_SIDE pixels a side.
     """
     rows = sum(-(-count // columns) for count in counts)
-    sides = (columns * (size + _MARGIN), rows * (size + _MARGIN + _LABEL) + len(counts) * _HEADING)
+    sides = (columns * (size + _MARGIN), rows * ((height or size) + _MARGIN + _LABEL) + len(counts) * _HEADING)
     if max(sides) > MAX_SIDE:
         raise RenderingError(f"the sheet would have {sides[0]} x {sides[1]} pixels, more than {MAX_SIDE} a side")
 
@@ -56,8 +57,8 @@ def compose_sheet(
     """Lay out sections, each a heading and its cells in rows.
 
     Args:
-        sections: heading and cells.
-        size: pixels a side of each picture.
+        sections: heading and cells; all pictures are of one size.
+        size: width of each picture in pixels.
         columns: pictures in a row.
 
     Raises:
@@ -65,8 +66,9 @@ def compose_sheet(
     """
     from PIL import Image, ImageDraw, ImageFont
 
-    check_sheet_size([len(cells) for _, cells in sections], size, columns)
-    pitch = (size + _MARGIN, size + _MARGIN + _LABEL)
+    tall = max((len(cell.pixels) for _, cells in sections for cell in cells), default=size)
+    check_sheet_size([len(cells) for _, cells in sections], size, columns, tall)
+    pitch = (size + _MARGIN, tall + _MARGIN + _LABEL)
     height = sum(_HEADING + -(-len(cells) // columns) * pitch[1] for _, cells in sections)
     sheet = Image.new("RGB", (columns * pitch[0] + _MARGIN, height + _MARGIN), _PAPER)
     draw = ImageDraw.Draw(sheet)
@@ -79,7 +81,7 @@ def compose_sheet(
             x, y = _MARGIN + number % columns * pitch[0], top + number // columns * pitch[1]
             sheet.paste(Image.fromarray(cell.pixels), (x, y))
             for line, (text, ink) in enumerate(((cell.title, _INK), (cell.caption, _FAINT))):
-                place = (x + 2, y + size + 2 + line * _LINE)
+                place = (x + 2, y + tall + 2 + line * _LINE)
                 draw.text(place, _fitted(text, size - 4, draw, font), fill=ink, font=font)
         top += -(-len(cells) // columns) * pitch[1]
     return np.asarray(sheet)

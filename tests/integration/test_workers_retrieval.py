@@ -46,7 +46,7 @@ def network(monkeypatch: pytest.MonkeyPatch) -> ExtentClassifier:
     """What stands for every classifier's file."""
     made = ExtentClassifier()
     monkeypatch.setattr("shapewright.classification.Classifier", lambda content, exemplars: made)
-    monkeypatch.setattr("workers.classifiers._kept", {})
+    monkeypatch.setattr("workers.stored.classifiers._kept", {})
     return made
 
 

@@ -18,6 +18,7 @@ from shapewright.classification import (
     MeshQuery,
     gather_instances,
     index_meshes,
+    instances_of_each,
     look_at,
     rank,
 )
@@ -26,6 +27,7 @@ from shapewright.classification.retrieval import combined_scores
 from shapewright.distances.panorama import DESCRIPTOR_SIZE, panorama_descriptor, panorama_distance
 from shapewright.errors import Cancelled, ClassifierError
 from shapewright.estimation import build_bank
+from shapewright.mapped_arrays import read_header, write_arrays
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling import compile_model
 from shapewright.progress import CallbackProgress
@@ -120,10 +122,21 @@ def test_damaged_and_foreign_files_are_refused(index: CollectionIndex, tmp_path:
         with pytest.raises(ClassifierError, match="no index"):
             CollectionIndex.load(path)
     build_bank(compile_model(slab()), 2).save(path)
-    with pytest.raises(ClassifierError, match="unknown"):
+    with pytest.raises(ClassifierError, match="no index"):
         CollectionIndex.load(path)
     with pytest.raises(FileNotFoundError):
         CollectionIndex.load(tmp_path / "nowhere.npz")
+
+
+def test_an_index_of_another_descriptor_is_refused(index: CollectionIndex, tmp_path: Path) -> None:
+    path = tmp_path / "index.npz"
+    index.save(path)
+    header = read_header(path)
+    names = ("probabilities", "picture_probabilities", "known", "descriptors")
+    arrays = {name: getattr(index, name) for name in names}
+    write_arrays(path, {**header, "descriptor_version": header["descriptor_version"] + 1}, arrays)
+    with pytest.raises(ClassifierError, match="version of the descriptor"):
+        CollectionIndex.load(path)
 
 
 def test_an_index_of_another_classifier_does_not_fit(index: CollectionIndex) -> None:
@@ -151,12 +164,10 @@ def test_indexes_are_cut_and_joined_by_name(index: CollectionIndex) -> None:
 
 @pytest.fixture(scope="module")
 def exemplars() -> dict[str, np.ndarray]:
-    def bank_of(compiled, count, progress):
-        return build_bank(compiled, count, np.random.default_rng(0), progress).descriptors
+    def banks(compiled, progress):
+        return build_bank(compiled, 30, np.random.default_rng(0), progress)
 
-    return {
-        model.class_name: gather_instances([compile_model(model)], bank_of, instances=30) for model in (rod(), slab())
-    }
+    return {model.class_name: gather_instances([compile_model(model)], banks) for model in (rod(), slab())}
 
 
 @pytest.mark.parametrize("evidence", ["probabilities", "panorama", "combined"])
@@ -185,10 +196,7 @@ def test_the_distance_is_that_to_the_nearest_exemplar(index: CollectionIndex, ex
 
 
 def test_a_base_instance_alone_is_the_papers_comparison(exemplars) -> None:
-    def never(compiled, count, progress):
-        raise AssertionError
-
-    (base,) = gather_instances([compile_model(slab())], never, instances=0)
+    (base,) = gather_instances([compile_model(slab())], None)
     np.testing.assert_array_equal(base, exemplars["slab"][0])
     mesh = compile_model(slab()).instance(np.ones(1))
     np.testing.assert_array_equal(base, panorama_descriptor(mesh.vertices, mesh.faces).to_array())
@@ -226,7 +234,10 @@ def test_what_cannot_be_ranked_is_said(index: CollectionIndex) -> None:
     with pytest.raises(ClassifierError, match="does not know 'teapot'"):
         rank(index, ClassQuery("teapot"), "probabilities")
     with pytest.raises(ClassifierError, match="need a model"):
-        gather_instances([], lambda *_: np.empty((0, DESCRIPTOR_SIZE), np.float32))
+        gather_instances([], None)
+    with pytest.raises(ClassifierError, match="not negative"):
+        instances_of_each([compile_model(slab())], -1)
+    assert [instances_of_each([compile_model(slab())] * models, 500) for models in (1, 3)] == [500, 167]
 
 
 SHARES = st.floats(0.0, 1.0)

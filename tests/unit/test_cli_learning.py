@@ -122,8 +122,8 @@ def test_of_several_models_the_best_one_is_found(folder: Path, tmp_path: Path) -
         "--samples", 30, "--settings", small,
     )  # fmt: skip
     document = shapewright(*arguments, "--json").document
-    assert document["model"] == "lamp"
-    assert [one["model_name"] for one in document["models_tried"]] == ["lamp", "slab"]
+    assert document["model"]["name"] == "lamp"
+    assert [one["model"]["name"] for one in document["tried"]] == ["lamp", "slab"]
     assert document["parameters"][0]["active"]
     assert "fitted with the model lamp" in shapewright(*arguments).stdout
 

@@ -10,6 +10,7 @@ from shapewright.distances.panorama import DESCRIPTOR_SIZE, panorama_descriptor
 from shapewright.errors import Cancelled, EstimationError
 from shapewright.estimation import PanoramaBank, build_bank
 from shapewright.estimation.bank import bank_chunks, joined
+from shapewright.mapped_arrays import read_header, write_arrays
 from shapewright.progress import CallbackProgress
 
 
@@ -95,7 +96,7 @@ def test_a_bank_of_another_model_does_not_fit(generator: EllGenerator, bank: Pan
     foreign = PanoramaBank(bank.values, bank.descriptors, "another model")
     with pytest.raises(EstimationError, match="another model"):
         foreign.check_fits(generator, 2)
-    with pytest.raises(EstimationError, match="another version of the descriptor"):
+    with pytest.raises(EstimationError, match="columns"):
         PanoramaBank(bank.values, bank.descriptors[:, 1:], bank.model_digest).check_fits(generator, 2)
     with pytest.raises(EstimationError, match="as many"):
         PanoramaBank(bank.values[:3], bank.descriptors, bank.model_digest)
@@ -115,3 +116,17 @@ def test_building_reports_and_can_be_cancelled(generator: EllGenerator, monkeypa
         build_bank(generator, 10, progress=CallbackProgress(cancel))
     with pytest.raises(EstimationError, match="at least one"):
         build_bank(generator, 0)
+
+
+@pytest.mark.parametrize(("field", "message"), [("version", "its format"), ("descriptor_version", "the descriptor")])
+def test_a_bank_of_another_version_is_refused(bank: PanoramaBank, tmp_path: Path, field: str, message: str) -> None:
+    path = tmp_path / "bank.npz"
+    bank.save(path)
+    header = read_header(path)
+    arrays = {"values": bank.values, "descriptors": bank.descriptors}
+    write_arrays(path, {**header, field: header[field] + 1}, arrays)
+    with pytest.raises(EstimationError, match=message):
+        PanoramaBank.load(path)
+    del header["descriptor_version"]  # as files had it before
+    write_arrays(path, header, arrays)
+    assert len(PanoramaBank.load(path)) == len(bank)

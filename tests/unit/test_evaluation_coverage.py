@@ -12,13 +12,13 @@ from small_dataset import bent_rod, rod, slab, write_dataset
 from shapewright.distances.panorama import panorama_descriptor, panorama_distance
 from shapewright.errors import Cancelled, EvaluationError
 from shapewright.estimation.bank import PanoramaBank
+from shapewright.estimation.rotation_like import rotation_like
 from shapewright.evaluation import descriptor_cache
 from shapewright.evaluation.coverage import Coverage, measure_coverage
 from shapewright.evaluation.datasets import LabelledFile, of_classes, read_dataset
 from shapewright.evaluation.descriptor_cache import BankRequest, DescriptorCache
 from shapewright.evaluation.metrics import coverage_of_classes
 from shapewright.evaluation.report import coverage_report
-from shapewright.evaluation.turned_alike import rotation_like
 from shapewright.mesh.file import load_mesh
 from shapewright.modeling import CompiledModel, compile_model
 from shapewright.progress import CallbackProgress

@@ -14,7 +14,7 @@ from chair_model import armchair
 from service_support import GLB, LiveService, box, problem, running, service, shared_service
 
 from models_store import catalog
-from service.compiled_models import CompiledModels, InstanceGenerator
+from service.compiled_models import CompiledModels, InstanceWriter
 from shapewright.mesh import TriangleMesh
 from shapewright.mesh.file import parse_mesh
 from shapewright.modeling import ProceduralModel, compile_model
@@ -283,10 +283,10 @@ def test_a_surface_that_would_be_too_fine_is_refused(tmp_path) -> None:
 def test_the_generators_used_last_are_kept() -> None:
     kept, made = CompiledModels(2), []
 
-    def get(name: str) -> InstanceGenerator:
-        def make() -> InstanceGenerator:
+    def get(name: str) -> InstanceWriter:
+        def make() -> InstanceWriter:
             made.append(name)
-            return InstanceGenerator(ProceduralModel.from_document(box()), 10_000)
+            return InstanceWriter(ProceduralModel.from_document(box()), 10_000)
 
         return kept.get(name, make)
 

@@ -11,24 +11,44 @@ import numpy as np
 import pytest
 import schemathesis
 from hypothesis import HealthCheck, given, settings
+from pydantic import BaseModel
 from schemathesis import GenerationMode
 from schemathesis.checks import load_all_checks
 from service_support import LiveService, box, running, tetrahedron
+from waiting import PATIENCE_S
 
 from models_store import catalog
 from models_store.job_kinds import JobKind
 from models_store.jobs import TASK_NAMES
 from service.openapi import FOLDER, stale
 from service.schemas.classifiers import TrainingSettingsIn
-from service.schemas.estimations import EstimationResultOut, EstimationSettingsIn
+from service.schemas.estimations import EstimationIn, EstimationResultOut, EstimationSettingsIn, ParameterEstimateOut
 from service.schemas.jobs import RESULT_PATHS
+from service.schemas.models import ParameterOut
 from service.schemas.retrievals import Evidence
 from shapewright.classification import TrainingSettings
 from shapewright.classification.retrieval import EVIDENCE
 from shapewright.distances.alignment import Pose
-from shapewright.estimation import Distances, Estimation, EstimationSettings, ParameterEstimate, Stage
-from shapewright.estimation.settings import EstimatorName
+from shapewright.estimation import (
+    Alternative,
+    Combination,
+    Distances,
+    Estimation,
+    EstimationSettings,
+    FailedThreshold,
+    ModelTried,
+    ParameterEstimate,
+    Ratio,
+    Stage,
+    Verdict,
+)
+from shapewright.estimation.query import AXES, UNITS
+from shapewright.estimation.residuals import PartResidual, Residuals
+from shapewright.estimation.result import ParameterStatus
+from shapewright.estimation.settings import EstimatorName, ModelPoints
 from shapewright.mesh import TriangleMesh
+from shapewright.modeling import ProceduralModel
+from shapewright.modeling.units import KINDS
 from shapewright.rendering import STYLES
 from shapewright.rendering.styles import FRAMINGS
 
@@ -46,7 +66,7 @@ def test_settings_are_those_of_the_library() -> None:
 
 
 def test_choices_are_those_of_the_library() -> None:
-    def choices(schema: type[TrainingSettingsIn] | type[EstimationSettingsIn], name: str) -> set[str]:
+    def choices(schema: type[BaseModel], name: str) -> set[str]:
         return set(schema.model_json_schema()["properties"][name]["anyOf"][0].get("enum", [])) or {
             schema.model_json_schema()["properties"][name]["anyOf"][0]["const"]
         }
@@ -54,6 +74,11 @@ def test_choices_are_those_of_the_library() -> None:
     assert choices(TrainingSettingsIn, "style") == set(STYLES)
     assert choices(TrainingSettingsIn, "framing") == set(FRAMINGS)
     assert choices(EstimationSettingsIn, "estimator") == set(get_args(EstimatorName))
+    assert choices(EstimationSettingsIn, "model_points") == set(get_args(ModelPoints))
+    assert choices(EstimationIn, "units") == set(UNITS)
+    assert choices(EstimationIn, "up") == set(AXES)
+    assert choices(ParameterEstimateOut, "status") == set(get_args(ParameterStatus))
+    assert choices(ParameterOut, "kind") == set(KINDS)
 
 
 def test_the_library_defaults_are_within_the_limits_of_the_service() -> None:
@@ -70,10 +95,28 @@ def test_an_estimation_of_the_library_fits_the_answer() -> None:
     values, pose = np.array([1.5]), Pose(np.eye(3), np.zeros(3), 2.0)
     distances = Distances(3.0, 0.02, 0.3, 900.0)
     mesh = TriangleMesh(np.eye(4, 3), np.array([[0, 1, 2]]))
-    parameter = ParameterEstimate("height", "height", "cm", 1.5, 45.0, 0.5, 2.0)
-    stage = Stage("panorama", values, pose, distances)
-    estimation = Estimation(1, values, (parameter,), pose, distances, (stage,), mesh)
-    document = {**json.loads(json.dumps(estimation.to_dict())), "seconds": 1.0, "models_tried": []}
+    model = ProceduralModel.from_document(box())
+    parameter = ParameterEstimate(
+        "height", "height", "cm", 1.5, 45.0, 0.5, 2.0, status="determined", interval=(1.4, 1.6)
+    )
+    residuals = Residuals(np.zeros(4), np.ones(2), 0.1, 0.9, 0.2, (PartResidual("top", 1.0, 0.1, 0.2, 0.3),))
+    estimation = Estimation(
+        estimator="reference",
+        model=model,
+        layer=1,
+        values=values,
+        parameters=(parameter,),
+        pose=pose,
+        distances=distances,
+        stages=(Stage("panorama", values, pose, distances),),
+        mesh=mesh,
+        tried=(ModelTried(model, distances, 3.0), ModelTried(model)),
+        ratios=(Ratio("height", "width", "Height : Width", 2.0, (1.9, 2.1), "determined"),),
+        combinations=(Combination("Height and Width", {"height": 0.5, "width": 0.5}, 0.1),),
+        alternatives=(Alternative("pose", model, values, (parameter,), pose, distances, "turned by 180 degrees"),),
+        verdict=Verdict(1, (FailedThreshold("zbuffer", 0.8, 0.7),), residuals),
+    )
+    document = {**json.loads(json.dumps(estimation.to_dict())), "seconds": 1.0}
     assert EstimationResultOut.model_validate(document).model_dump() == document
 
 
@@ -170,10 +213,10 @@ def test_whatever_is_sent_the_answer_is_as_described(
     @settings(max_examples=5, derandomize=True, deadline=None, database=None, suppress_health_check=list(HealthCheck))
     @given(case=operation.as_strategy(generation_mode=mode))
     def check(case: schemathesis.Case) -> None:
-        case.call_and_validate(base_url=base_url, checks=CHECKS, timeout=20)
+        case.call_and_validate(base_url=base_url, checks=CHECKS, timeout=PATIENCE_S)
         if "id" in case.path_parameters and resource in known_ids:
             case.path_parameters["id"] = known_ids[resource]
-            response = case.call(base_url=base_url, timeout=20)
+            response = case.call(base_url=base_url, timeout=PATIENCE_S)
             assert response.status_code < 500
             operation.validate_response(response)
 

@@ -9,13 +9,13 @@ from service_support import (
     NOWHERE,
     LiveService,
     box,
-    eventually,
     problem,
     running,
     service,
     shared_service,
     tetrahedron,
 )
+from waiting import PATIENCE_S, wait_until
 
 from models_store import catalog
 from models_store.broker import QUEUE
@@ -194,12 +194,14 @@ def test_a_classifier_in_training_cannot_be_asked(service: LiveService) -> None:
     problem(service.client.post("/v1/classifications", json=body), 409, "classifier_id")
 
 
-def estimation_result() -> dict[str, Any]:
+def estimation_result(model_id: str, name: str = "box") -> dict[str, Any]:
     pose = {"rotation": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], "translation": [1.0, 2.0, 3.0]}
     pose["scale"] = 2.0  # type: ignore[assignment]
     distances = {"panorama": 3.0, "surface": 0.02, "zbuffer": 0.3, "zbuffer_raw": 900.0}
     stage = {"layer": 1, "values": [1.5, 1.0], "pose": pose, "distances": distances, "complete": True}
     return {
+        "estimator": "reference",
+        "model": {"id": model_id, "name": name},
         "layer": 3,
         "complete": True,
         "values": [1.5, 1.0],
@@ -214,40 +216,54 @@ def estimation_result() -> dict[str, Any]:
                 "maximum": 2.0,
                 "active": True,
                 "option": None,
+                "status": "determined",
+                "interval": [1.4, 1.6],
             }
         ],
         "pose": pose,
         "distances": distances,
         "stages": [{"name": "panorama", **stage}, {"name": "zbuffer", **stage, "layer": 3}],
         "seconds": 12.5,
-        "models_tried": [],
+        "verdict": {"layer": 3, "failed": [], "residuals": None},
+        "ratios": [],
+        "combinations": [],
+        "alternatives": [],
+        "tried": [],
     }
 
 
 def test_an_estimation_is_accepted_and_its_answer_comes(service: LiveService) -> None:
     mesh, model = service.upload(tetrahedron()).json(), service.add_model()
     settings = {"samples": 50, "subdivision_steps": 1, "step_sizes": [1.0, 0.1], "estimator": "reference"}
-    body = {"mesh_id": mesh["id"], "model_id": model["id"], "settings": settings}
+    body = {"mesh_id": mesh["id"], "model_id": model["id"], "units": "mm", "up": "+y"}
+    body |= {"time_limit_s": 2.5, "settings": settings}
     accepted = service.client.post("/v1/estimations", json=body).json()
     waiting = service.client.get(accepted["url"]).json()
     assert (waiting["state"], waiting["result"], waiting["mesh_url"]) == ("queued", None, None)
     assert (waiting["mesh_id"], waiting["model_id"]) == (mesh["id"], model["id"])
     assert waiting["settings"] == settings
+    assert (waiting["units"], waiting["up"], waiting["time_limit_s"]) == ("mm", "+y", 2.5)
+    assert waiting["residuals_url"] is None
+    problem(service.client.get(f"{accepted['url']}/residuals"), 404)
     problem(service.client.get(f"{accepted['url']}/mesh"), 404)
 
     fitted = parse_mesh(tetrahedron(), "off").to_bytes("glb")
     service.services.artifacts.put("estimations/one.glb", fitted)
+    service.services.artifacts.put("estimations/one-residuals.glb", b"colored")
     record = partial(
         catalog.record_estimation,
         identifier=accepted["id"],
-        result=estimation_result(),
+        result=estimation_result(model["id"]),
         mesh_key="estimations/one.glb",
+        residuals_key="estimations/one-residuals.glb",
     )
     service.work(accepted["job"]["id"], record)
     done = service.client.get(accepted["url"]).json()
-    assert (done["state"], done["result"]) == ("succeeded", estimation_result())
+    assert (done["state"], done["result"]) == ("succeeded", estimation_result(model["id"]))
     content = service.client.get(done["mesh_url"])
     assert (content.content, content.headers["content-type"]) == (fitted, GLB)
+    colored = service.client.get(done["residuals_url"])
+    assert (colored.content, colored.headers["content-type"]) == (b"colored", GLB)
     assert service.client.get("/v1/estimations").json()["items"] == [done]
 
 
@@ -259,18 +275,16 @@ def test_an_estimation_for_a_class_says_which_model_it_found(service: LiveServic
     waiting = service.client.get(accepted["url"]).json()
     assert (waiting["model_id"], waiting["class_name"]) == (None, "box")
     assert waiting["model_ids"] == [model["id"] for model in models]
-    result = estimation_result() | {
-        "models_tried": [
-            {"model_id": models[1]["id"], "model_name": "tall_box", "panorama": 0.25, "distances": None},
-            {"model_id": models[0]["id"], "model_name": "flat_box", "panorama": 0.5, "distances": None},
-        ]
-    }
+    tried = [
+        {"model": {"id": models[number]["id"], "name": name}, "panorama": panorama, "distances": None}
+        for number, name, panorama in ((1, "tall_box", 0.25), (0, "flat_box", None))
+    ]
+    result = estimation_result(models[1]["id"], "tall_box") | {"tried": tried}
     record = partial(
         catalog.record_estimation,
         identifier=accepted["id"],
         result=result,
         mesh_key=None,
-        model_id=models[1]["id"],
     )
     service.work(accepted["job"]["id"], record)
     done = service.client.get(accepted["url"]).json()
@@ -291,6 +305,10 @@ def test_an_estimation_for_a_class_says_which_model_it_found(service: LiveServic
         ({"settings": {"image_size": 101}}, "settings.image_size"),
         ({"settings": {"step_sizes": [0.1, 1.0]}}, "settings.step_sizes"),
         ({"settings": {"estimator": "magic"}}, "settings.estimator"),
+        ({"settings": {"model_points": "edges"}}, "settings.model_points"),
+        ({"units": "furlong"}, "units"),
+        ({"up": "z"}, "up"),
+        ({"time_limit_s": 0}, "time_limit_s"),
     ],
 )
 def test_an_estimation_that_makes_no_sense_is_refused(shared_service: LiveService, change: Any, where: str) -> None:
@@ -323,14 +341,14 @@ def test_without_a_broker_the_job_is_accepted_and_stays_queued(tmp_path) -> None
             "artifacts": True,
             "broker": False,
         }
-        eventually(lambda: "shapewright_wakeups_lost_total 3.0" in live.client.get("/metrics").text)
+        wait_until(lambda: "shapewright_wakeups_lost_total 3.0" in live.client.get("/metrics").text)
 
 
 def test_a_wakeup_is_in_the_queue_when_the_job_is_accepted(service: LiveService) -> None:
     service.client.post("/v1/classifiers", json={"model_ids": two_models(service)}).raise_for_status()
     with service.services.celery.connection_for_read() as connection:
         queue = connection.SimpleQueue(QUEUE)
-        kinds = [queue.get(timeout=5).headers["task"] for _ in range(3)]
+        kinds = [queue.get(timeout=PATIENCE_S).headers["task"] for _ in range(3)]
         queue.close()
     assert sorted(kinds) == [
         "shapewright.render_thumbnail",

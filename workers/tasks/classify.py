@@ -9,9 +9,9 @@ from jaxtyping import UInt8
 
 from models_store import catalog
 from models_store.errors import ArtifactError
-from workers.classifiers import StoredModels, stored_classifier
 from workers.context import JobContext, Outcome
 from workers.finite import finite
+from workers.stored.classifiers import StoredModels, stored_classifier
 
 log = structlog.get_logger(__name__)
 

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 from models_store import claims
 from models_store.session import OUTAGES
 from shapewright.errors import ClassifierError
-from workers.array_store import ArtifactArrays
 from workers.context import JobContext, Outcome, utc_now
 from workers.learning_plans import learning_plan
 from workers.stopping import GivingWay
+from workers.stored.arrays import ArtifactArrays
 
 if TYPE_CHECKING:
     from sqlalchemy.orm import Session

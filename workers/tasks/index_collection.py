@@ -11,10 +11,10 @@ from models_store import catalog
 from models_store.errors import ArtifactError, ArtifactNotFoundError
 from shapewright.errors import Cancelled, ClassifierError, MeshError
 from shapewright.progress import PartialProgress
-from workers.classifiers import LoadedClassifier, stored_classifier
 from workers.context import JobContext, Outcome
-from workers.indexes import load_changing_index, load_index, store_index
 from workers.stopping import WorkerStopping
+from workers.stored.classifiers import LoadedClassifier, stored_classifier
+from workers.stored.indexes import load_changing_index, load_index, store_index
 
 if TYPE_CHECKING:
     from shapewright.classification import CollectionIndex, SkippedMesh

@@ -10,16 +10,17 @@ import numpy as np
 from models_store import catalog
 from models_store.tables import CollectionRow, RetrievalRow
 from shapewright.progress import PartialProgress, Progress
-from workers.banks import new_bank, stored_bank
-from workers.classifiers import stored_classifier
 from workers.context import JobContext, Outcome
 from workers.finite import finite
-from workers.indexes import load_index
+from workers.stored.banks import new_bank, stored_bank
+from workers.stored.classifiers import stored_classifier
+from workers.stored.indexes import load_index
 
 if TYPE_CHECKING:
     from jaxtyping import Float32
 
     from shapewright.classification import ClassQuery, CollectionIndex, MeshQuery, RankedMesh
+    from shapewright.estimation import InstanceGenerator, PanoramaBank
     from shapewright.modeling import CompiledModel
     from shapewright.rendering import LabelledMesh
 
@@ -100,15 +101,16 @@ def _models(context: JobContext, row: RetrievalRow, collection: CollectionRow) -
 def _exemplars(
     context: JobContext, row: RetrievalRow, models: "Sequence[CompiledModel]", progress: Progress
 ) -> "Float32[np.ndarray, 'M D']":
-    from shapewright.classification import gather_instances
+    from shapewright.classification import gather_instances, instances_of_each
     from shapewright.estimation import EstimationSettings
 
-    def bank_of(compiled: "CompiledModel", count: int, part: Progress) -> "Float32[np.ndarray, 'M D']":
-        settings = EstimationSettings(samples=count, seed=row.settings["seed"])
-        bank = stored_bank(context, compiled, settings) or new_bank(context, compiled, settings, part)
-        return bank.descriptors
+    count = instances_of_each(models, row.settings["instances"])
 
-    return gather_instances(models, bank_of, instances=row.settings["instances"], progress=progress)
+    def banks(compiled: "InstanceGenerator", part: Progress) -> "PanoramaBank":
+        settings = EstimationSettings(samples=count, seed=row.settings["seed"])
+        return stored_bank(context, compiled, settings) or new_bank(context, compiled, settings, part)
+
+    return gather_instances(models, banks if count else None, progress=progress)
 
 
 def _sheet(context: JobContext, row: RetrievalRow, found: "Sequence[RankedMesh]", names: dict[str, str]) -> bytes:

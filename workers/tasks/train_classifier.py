@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from models_store import catalog
 from models_store.job_kinds import JobKind
 from shapewright.progress import PartialProgress, Progress
-from workers.array_store import ArtifactArrays
 from workers.context import JobContext, Outcome
 from workers.finite import finite
 from workers.learning_plans import LearningPlan, learning_plan
 from workers.shared_parts import SharedParts
+from workers.stored.arrays import ArtifactArrays
 
 if TYPE_CHECKING:
     from shapewright.classification.exemplars import Exemplars

@@ -9,6 +9,7 @@ function parameter(name: string, rest: Partial<Parameter> = {}): Parameter {
     label: name.replace("_", " "),
     unit: null,
     base_value: null,
+    kind: null,
     minimum: 0.5,
     maximum: 2,
     default: 1,

@@ -169,27 +169,25 @@ class _Work:
         return Candidate(model, estimation.values, pose.rotation, pose.translation, pose.scale)
 
     def _alternatives(self, number: int, answer: Estimation) -> tuple[Alternative, ...]:
+        """List what fits about as well; only what is listed is measured by every distance."""
+        symmetry = self._model(number).model.symmetry
+        best = Contender(answer.model, answer.values, answer.parameters, answer.pose, answer.distances, symmetry)
         limit = 1.2 * answer.distances.zbuffer + 0.03
-        near = sorted((one for one in self.search.kept if one.zbuffer < limit), key=lambda one: one.zbuffer)[:16]
-        best = Contender(
-            answer.model,
-            answer.values,
-            answer.parameters,
-            answer.pose,
-            answer.distances,
-            self._model(number).model.symmetry,
-        )
-        return list_alternatives(best, [self._contender(candidate) for candidate in near])
+        near = [one for one in self.search.kept if one.zbuffer < limit]
+        listed = list_alternatives(best, [self._contender(one) for one in near])
+        by_values = {id(one.values): one for one in near}
+        return tuple(replace(one, distances=self._distances(by_values[id(one.values)])) for one in listed)
 
     def _contender(self, candidate: Candidate) -> Contender:
         number = self.search.models.index(candidate.model)
         comparison, model = self._comparisons[number], self._model(number)
+        zbuffer = fine_distance(self.search.target, candidate).zbuffer
         return Contender(
             model.model,
             candidate.values,
             parameter_estimates(model, candidate.values, self._prepared.query),
             comparison.to_file.compose(candidate.pose),
-            self._distances(candidate),
+            Distances(np.nan, np.nan, zbuffer, np.nan),
             model.model.symmetry,
         )
 

@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from typing import TypeVar
 
+import numba
+
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
@@ -17,6 +19,8 @@ class Stopped(Exception):  # noqa: N818 - a signal between the threads of a sear
 
 class Pool:
     """Runs the tasks of one search on all processors; the kernels release the interpreter's lock.
+
+    Whoever lets compiled kernels use fewer threads (``numba.set_num_threads``) has fewer here, too.
 
     While tasks run, the calling thread keeps asking its caller whether to go on. When the caller raises, the running
     tasks are told through :meth:`check`, and waiting ones are dropped.
@@ -61,4 +65,5 @@ class Pool:
 
 
 def _processors() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return min(available, numba.get_num_threads())

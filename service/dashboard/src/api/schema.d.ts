@@ -386,6 +386,29 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/v1/estimations/{id}/residuals": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Estimation Residuals
+         * @description Where the query and the fitted mesh part, as vertex colors; 404 until there is a fitted mesh.
+         *
+         *     Yellow lies on the other surface; dark violet is four times the tolerance away from it, or more. Both meshes are in
+         *     the query's own coordinates.
+         */
+        get: operations["get_estimation_residuals"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/v1/collections": {
         parameters: {
             query?: never;
@@ -654,6 +677,30 @@ export interface components {
              */
             url: string;
             job: components["schemas"]["JobOut"];
+        };
+        /**
+         * AlternativeOut
+         * @description Another answer that fits nearly as well.
+         */
+        AlternativeOut: {
+            /**
+             * Kind
+             * @description What is different.
+             * @enum {string}
+             */
+            kind: "pose" | "option" | "model";
+            /** Label */
+            label: string;
+            model: components["schemas"]["FoundModelOut"];
+            /**
+             * Values
+             * @description x in the order of the model's parameters.
+             */
+            values: number[];
+            /** Parameters */
+            parameters: components["schemas"]["ParameterEstimateOut"][];
+            pose: components["schemas"]["PoseOut"];
+            distances: components["schemas"]["DistancesOut"];
         };
         /** Body_create_mesh */
         Body_create_mesh: {
@@ -1032,6 +1079,26 @@ export interface components {
             next_cursor: string | null;
         };
         /**
+         * CombinationOut
+         * @description What the mesh determines although it does not determine the parameters in it.
+         */
+        CombinationOut: {
+            /** Label */
+            label: string;
+            /**
+             * Weights
+             * @description Share of each parameter, by name.
+             */
+            weights: {
+                [key: string]: number;
+            };
+            /**
+             * Interval Share
+             * @description Width of its 90 % interval as a share of what the ranges allow.
+             */
+            interval_share: number;
+        };
+        /**
          * ConditionOut
          * @description Holds where x of a parameter lies in a range; of a parameter that is not active it does not hold.
          */
@@ -1077,6 +1144,21 @@ export interface components {
              * @description A class; its models are all tried, and the result says which one fits.
              */
             class_name?: string | null;
+            /**
+             * Units
+             * @description Unit of the mesh's coordinates: lengths come in it, and the scale of the fit is known.
+             */
+            units?: ("mm" | "cm" | "m" | "in") | null;
+            /**
+             * Up
+             * @description The axis of the mesh's file that points up.
+             */
+            up?: ("+x" | "-x" | "+y" | "-y" | "+z" | "-z") | null;
+            /**
+             * Time Limit S
+             * @description Seconds of work after which the best answer until then is taken.
+             */
+            time_limit_s?: number | null;
             settings?: components["schemas"]["EstimationSettingsIn"];
         };
         /**
@@ -1104,6 +1186,21 @@ export interface components {
              * @description The models that are tried.
              */
             model_ids: string[];
+            /**
+             * Units
+             * @description Unit of the mesh's coordinates, if it was given.
+             */
+            units: string | null;
+            /**
+             * Up
+             * @description Axis of the mesh's file that points up, if it was given.
+             */
+            up: string | null;
+            /**
+             * Time Limit S
+             * @description Seconds of work that it may take, if that was limited.
+             */
+            time_limit_s: number | null;
             /** Settings */
             settings: {
                 [key: string]: unknown;
@@ -1114,6 +1211,11 @@ export interface components {
              * @description The fitted mesh as GLB, in the query's coordinates.
              */
             mesh_url: string | null;
+            /**
+             * Residuals Url
+             * @description Mesh and fit as GLB, colored by how far each part of them is from the other.
+             */
+            residuals_url: string | null;
             /** Job Id */
             job_id: string;
             /**
@@ -1141,6 +1243,13 @@ export interface components {
          */
         EstimationResultOut: {
             /**
+             * Estimator
+             * @description Which estimator found it.
+             */
+            estimator: string;
+            /** @description The model that fits best. */
+            model: components["schemas"]["FoundModelOut"];
+            /**
              * Layer
              * @enum {integer}
              */
@@ -1163,16 +1272,34 @@ export interface components {
             pose: components["schemas"]["PoseOut"];
             /** Seconds */
             seconds: number;
+            verdict: components["schemas"]["VerdictOut"] | null;
             /**
-             * Models Tried
-             * @description Of an estimation for a class: all of its models, nearest first.
+             * Ratios
              * @default []
              */
-            models_tried: components["schemas"]["ModelTriedOut"][];
+            ratios: components["schemas"]["RatioOut"][];
+            /**
+             * Combinations
+             * @default []
+             */
+            combinations: components["schemas"]["CombinationOut"][];
+            /**
+             * Alternatives
+             * @default []
+             */
+            alternatives: components["schemas"]["AlternativeOut"][];
+            /**
+             * Tried
+             * @description Every model that was tried, best first.
+             * @default []
+             */
+            tried: components["schemas"]["ModelTriedOut"][];
         };
         /**
          * EstimationSettingsIn
          * @description Settings of an estimation; what is left out keeps the library's default (paper section 3.3).
+         *
+         *     Those of random instances, points, pictures and steps are the reference's.
          */
         EstimationSettingsIn: {
             /**
@@ -1195,6 +1322,11 @@ export interface components {
              * @description Catmull–Clark steps of the instances that are compared.
              */
             subdivision_steps?: number | null;
+            /**
+             * Model Points
+             * @description Where the surface distance measures an instance: evenly over its surface, or at its vertices.
+             */
+            model_points?: ("surface" | "vertices") | null;
             /** Surface Threshold */
             surface_threshold?: number | null;
             /** Zbuffer Threshold */
@@ -1204,13 +1336,43 @@ export interface components {
              * @description Steps of the hill climbing, largest first.
              */
             step_sizes?: number[] | null;
+            /**
+             * Refined Models
+             * @description Of several models, how many the reference takes through all layers.
+             */
+            refined_models?: number | null;
             /** Seed */
             seed?: number | null;
             /**
              * Estimator
-             * @description Which estimator works; `reference` is the paper, step by step.
+             * @description Which estimator works: `fast` (the default), or `reference`, the paper step by step.
              */
-            estimator?: "reference" | null;
+            estimator?: ("fast" | "reference") | null;
+        };
+        /**
+         * FailedThresholdOut
+         * @description A distance that was not below its threshold.
+         */
+        FailedThresholdOut: {
+            /**
+             * Name
+             * @enum {string}
+             */
+            name: "surface" | "zbuffer";
+            /** Value */
+            value: number | null;
+            /** Threshold */
+            threshold: number;
+        };
+        /**
+         * FoundModelOut
+         * @description A model that an estimation speaks of.
+         */
+        FoundModelOut: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
         };
         /**
          * HealthOut
@@ -1529,17 +1691,14 @@ export interface components {
          * @description How near a model of the class came.
          */
         ModelTriedOut: {
-            /** Model Id */
-            model_id: string;
-            /** Model Name */
-            model_name: string;
+            model: components["schemas"]["FoundModelOut"];
+            /** @description Of its best fit; null if others were nearer before one. */
+            distances: components["schemas"]["DistancesOut"] | null;
             /**
              * Panorama
-             * @description Smallest panorama distance of its random instances to the query.
+             * @description Smallest panorama distance of its random instances, if it has any.
              */
-            panorama: number;
-            /** @description Of its estimation; null if it was not among the nearest. */
-            distances: components["schemas"]["DistancesOut"] | null;
+            panorama: number | null;
         };
         /**
          * OptionOut
@@ -1590,6 +1749,16 @@ export interface components {
              * @description Name of the option, of a choice or switch.
              */
             option: string | null;
+            /**
+             * Status
+             * @description What the query says about it; null where the estimator does not judge.
+             */
+            status: ("determined" | "determined_up_to_scale" | "not_determined" | "inactive" | "at_range_end") | null;
+            /**
+             * Interval
+             * @description Where x lies with a probability of 90 %, given this structure; null if unknown.
+             */
+            interval: number[] | null;
         };
         /**
          * ParameterOut
@@ -1607,6 +1776,11 @@ export interface components {
              * @description Displayed value of the base model; null if x itself is shown.
              */
             base_value: number | null;
+            /**
+             * Kind
+             * @description What the displayed value is; null if the author does not say, and of choices.
+             */
+            kind: ("length" | "angle" | "ratio") | null;
             /**
              * Minimum
              * @description Smallest x.
@@ -1653,6 +1827,25 @@ export interface components {
              * @description Conditions that must all hold, else it is left out.
              */
             present_when: components["schemas"]["ConditionOut"][];
+        };
+        /**
+         * PartResidualOut
+         * @description How far a part of the fitted model is from the mesh, in units in which the mesh reaches from -1 to 1.
+         */
+        PartResidualOut: {
+            /** Name */
+            name: string;
+            /** Share Of Area */
+            share_of_area: number;
+            /** Mean */
+            mean: number;
+            /** P95 */
+            p95: number;
+            /**
+             * Invented Share
+             * @description Share of its area farther from the mesh than the tolerance.
+             */
+            invented_share: number;
         };
         /**
          * PoseOut
@@ -1720,11 +1913,12 @@ export interface components {
             /** @constant */
             format: "shapewright-procedural-model";
             /** @constant */
-            version: 2;
+            version: 3;
             name: string;
             class: string;
             description?: string;
             closed?: boolean;
+            unit_m?: number | null;
             symmetry?: {
                 mirrors?: ("x" | "y" | "z")[];
                 axis?: ("x" | "y" | "z") | null;
@@ -1764,6 +1958,8 @@ export interface components {
                 name: string;
                 label: string;
                 unit?: string | null;
+                /** @enum {unknown} */
+                kind?: "length" | "angle" | "ratio" | null;
                 base_value?: number | null;
                 range: [
                     number,
@@ -1800,6 +1996,33 @@ export interface components {
             }[];
         };
         /**
+         * RatioOut
+         * @description Two lengths beside each other, which a mesh determines whatever its scale is.
+         */
+        RatioOut: {
+            /**
+             * Numerator
+             * @description Name of a parameter.
+             */
+            numerator: string;
+            /**
+             * Denominator
+             * @description Name of another one.
+             */
+            denominator: string;
+            /** Label */
+            label: string;
+            /** Value */
+            value: number;
+            /**
+             * Interval
+             * @description Where it lies with a probability of 90 %, given this structure.
+             */
+            interval: number[] | null;
+            /** Status */
+            status: ("determined" | "determined_up_to_scale" | "not_determined" | "inactive" | "at_range_end") | null;
+        };
+        /**
          * ReadinessOut
          * @description What the service leans on; the broker is reported, but jobs are accepted without it.
          */
@@ -1812,6 +2035,28 @@ export interface components {
             artifacts: boolean;
             /** Broker */
             broker: boolean;
+        };
+        /**
+         * ResidualsOut
+         * @description Where the surfaces of mesh and fit part, in units in which the mesh reaches from -1 to 1.
+         */
+        ResidualsOut: {
+            /** Tolerance */
+            tolerance: number;
+            /** Mean */
+            mean: number;
+            /**
+             * Followed Share
+             * @description Share of the mesh's area that is within the tolerance of the fit.
+             */
+            followed_share: number;
+            /**
+             * Invented Share
+             * @description Share of the fit's area farther from the mesh than the tolerance.
+             */
+            invented_share: number;
+            /** By Part */
+            by_part: components["schemas"]["PartResidualOut"][];
         };
         /**
          * RetrievalIn
@@ -2092,6 +2337,23 @@ export interface components {
             window?: number | null;
             /** Subdivision Steps */
             subdivision_steps?: number | null;
+        };
+        /**
+         * VerdictOut
+         * @description How well the answer rebuilds the mesh.
+         */
+        VerdictOut: {
+            /**
+             * Layer
+             * @enum {integer}
+             */
+            layer: 1 | 2 | 3;
+            /**
+             * Failed
+             * @description Thresholds that higher layers missed, the highest first.
+             */
+            failed: components["schemas"]["FailedThresholdOut"][];
+            residuals: components["schemas"]["ResidualsOut"] | null;
         };
     };
     responses: never;
@@ -3192,6 +3454,53 @@ export interface operations {
         requestBody?: never;
         responses: {
             /** @description The fitted mesh as GLB. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "model/gltf-binary": string;
+                };
+            };
+            /** @description Not modified. */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description There is no such thing. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    get_estimation_residuals: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description A scene with the nodes `fit` and `query`, colored. */
             200: {
                 headers: {
                     [name: string]: unknown;

@@ -17,7 +17,7 @@ const LAYERS: Record<number, string> = {
 export function EstimationResult({ estimation, model }: { estimation: Estimation; model: Model | undefined }) {
   const result = estimation.result;
   if (!result) return null;
-  const { layer, complete, distances, parameters, seconds, models_tried } = result;
+  const { layer, complete, distances, parameters, seconds, model: found, tried } = result;
   const threshold = thresholds(estimation);
   const values = Object.fromEntries(parameters.map(({ name, value }) => [name, value]));
   return (
@@ -40,7 +40,7 @@ export function EstimationResult({ estimation, model }: { estimation: Estimation
           <dd>{duration(seconds)}</dd>
         </div>
       </dl>
-      {models_tried.length > 0 && <ModelsTried estimation={estimation} tried={models_tried} />}
+      {tried.length > 1 && <ModelsTried model={found} tried={tried} />}
       <ParameterTable parameters={parameters} />
       <div className="button-row">
         {estimation.mesh_url && (
@@ -58,25 +58,31 @@ export function EstimationResult({ estimation, model }: { estimation: Estimation
   );
 }
 
-/** Which model of the class it is, and how near each of them came at first. */
-function ModelsTried({ estimation, tried }: { estimation: Estimation; tried: Result["models_tried"] }) {
-  const chosen = tried.find((model) => model.model_id === estimation.model_id);
+/** Which model of the class it is, and how near each of them came. */
+function ModelsTried({ model, tried }: Pick<Result, "model" | "tried">) {
   return (
     <div className="models-tried" data-testid="models-tried">
       <p>
-        Rebuilt with <strong>{humanize(chosen?.model_name ?? "")}</strong>, out of {count(tried.length, "model")} of the
-        class.
+        Rebuilt with <strong>{humanize(model.name)}</strong>, out of {count(tried.length, "model")} of the class.
       </p>
       <ol>
-        {tried.map((model) => (
-          <li key={model.model_id} data-chosen={model.model_id === estimation.model_id}>
-            {humanize(model.model_name)}{" "}
-            <small title="Smallest panorama distance of its random variations">{significant(model.panorama)}</small>
+        {tried.map((one) => (
+          <li key={one.model.id} data-chosen={one.model.id === model.id}>
+            {humanize(one.model.name)} <Nearness tried={one} />
           </li>
         ))}
       </ol>
     </div>
   );
+}
+
+function Nearness({ tried }: { tried: Result["tried"][number] }) {
+  const { distances, panorama } = tried;
+  if (distances && distances.zbuffer !== null) {
+    return <small title="Z-buffer distance of its best fit">{significant(distances.zbuffer)}</small>;
+  }
+  if (panorama === null) return <small>not tried</small>;
+  return <small title="Panorama distance of its nearest random variation; others were nearer">given up</small>;
 }
 
 function thresholds(estimation: Estimation): typeof DEFAULT_THRESHOLDS {

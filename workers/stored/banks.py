@@ -4,7 +4,6 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
 import structlog
 
 from models_store.errors import ArtifactError, ArtifactNotFoundError
@@ -45,19 +44,20 @@ def new_bank(
     Raises:
         BankCancelled: the progress cancelled.
     """
-    from shapewright.estimation import build_bank
+    from shapewright.estimation import build_bank_for
 
-    rng, _ = np.random.default_rng(settings.seed).spawn(2)  # as the estimator does without a bank
-    bank = build_bank(compiled, settings.samples, rng, progress, subdivision_steps=settings.subdivision_steps)
+    bank = build_bank_for(compiled, settings, progress)
     _keep(context, bank_key(compiled, settings), bank)
     return stored_bank(context, compiled, settings) or bank
 
 
 def bank_key(compiled: "InstanceGenerator", settings: "EstimationSettings") -> str:
     """The artefact key of a bank: everything that its content depends on."""
+    from shapewright.distances.panorama import VERSION as DESCRIPTOR_VERSION
     from shapewright.estimation.bank import VERSION
 
-    name = f"samples{settings.samples}-seed{settings.seed}-steps{settings.subdivision_steps}-v{VERSION}.npz"
+    versions = f"v{VERSION}-d{DESCRIPTOR_VERSION}"
+    name = f"samples{settings.samples}-seed{settings.seed}-steps{settings.subdivision_steps}-{versions}.npz"
     return f"banks/{compiled.model.digest}/{name}"
 
 

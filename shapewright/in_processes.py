@@ -22,7 +22,8 @@ def in_processes(
 ) -> Iterator[tuple[int, Outcome]]:
     """Yield the number and the outcome of each task as soon as it is finished, in any order.
 
-    At most two tasks for each process wait at once; ``tasks`` is asked for more as others finish.
+    At most two tasks for each process wait at once; ``tasks`` is asked for more as others finish. Each process computes
+    with one thread: several would only stand in the way of the other processes.
 
     Args:
         tasks: numbers and tasks; picklable.
@@ -34,7 +35,7 @@ def in_processes(
     Raises:
         Exception: what ``work`` or ``beat`` raises; tasks that have not begun are dropped.
     """
-    pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), initializer=begin)
+    pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"), initializer=_begin, initargs=(begin,))
     pending: dict[Future[Outcome], int] = {}
 
     def finished() -> Iterator[tuple[int, Outcome]]:
@@ -52,3 +53,10 @@ def in_processes(
             yield from finished()
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def _begin(begin: Callable[[], None]) -> None:
+    import numba
+
+    numba.set_num_threads(1)
+    begin()

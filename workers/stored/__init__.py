@@ -1,0 +1,1 @@
+"""What workers keep as artefacts and find again: banks, classifiers, indexes, arrays."""
