@@ -16,7 +16,7 @@ from shapewright.mesh import TriangleMesh
 from shapewright.modeling import CompiledModel, compile_model
 from shapewright.progress import NULL_PROGRESS, CallbackProgress, Progress
 
-SMALL = EstimationSettings(surface_points=300, image_size=96)
+SMALL = EstimationSettings(surface_points=300, image_size=128)
 TRUE = np.array([1.3, 0.8, 1.2, 1.0])
 
 
@@ -54,10 +54,10 @@ def found(query: TriangleMesh, rivals: list[CompiledModel], reports: list[tuple[
     return run(query, rivals, CallbackProgress(lambda *report: reports.append(report)))
 
 
-def assert_found(found: Estimation, values: np.ndarray, pose: Pose, tolerance: float = 0.04) -> None:
-    np.testing.assert_allclose(found.values, values, atol=tolerance)
-    assert angle_deg(found.pose.rotation, pose.rotation) < 100 * tolerance
-    assert found.pose.scale == pytest.approx(pose.scale, rel=tolerance)
+def assert_found(found: Estimation, values: np.ndarray, pose: Pose) -> None:
+    np.testing.assert_allclose(found.values, values, atol=0.05 * 1.5)  # 5 % of the ranges
+    assert angle_deg(found.pose.rotation, pose.rotation) < 4.0
+    assert found.pose.scale == pytest.approx(pose.scale, rel=0.06)
     assert found.distances.zbuffer < 0.1
     assert found.layer == 3
     assert found.complete
@@ -73,9 +73,7 @@ def test_the_model_of_a_class_its_values_and_its_pose_are_found(
     assert found.estimator == "fast"
     assert_found(found, TRUE, POSE)
     extent = np.ptp(query.vertices, axis=0).max()
-    np.testing.assert_allclose(
-        np.sort(found.mesh.bounds.ravel()), np.sort(query.bounds.ravel()), atol=0.03 * extent
-    )
+    np.testing.assert_allclose(np.sort(found.mesh.bounds.ravel()), np.sort(query.bounds.ravel()), atol=0.03 * extent)
     assert [one.model.name for one in found.tried] == ["lever", "sign"]
     assert all(one.distances is not None for one in found.tried)
     assert found.tried[0].distances.zbuffer == pytest.approx(found.distances.zbuffer)
@@ -121,10 +119,10 @@ def test_any_pose_and_scale(model: CompiledModel, seed: int) -> None:
     assert_found(run(placed(model, values, pose), model), values, pose)
 
 
-def test_options_are_found(model: CompiledModel) -> None:
+def test_options_are_found() -> None:
     chair = compile_model(armchair())
-    values = chair.settle(
-        chair.values_from_mapping({"back": 3, "armrests": 1, "leg_length": 1.4, "arm_height": 1.2, "ring_height": 0.6})
+    values = chair.values_from_mapping(
+        {"back": 3, "armrests": 1, "leg_length": 1.4, "arm_height": 1.2, "ring_height": 0.6}
     )
     found = run(placed(chair, values, random_pose(4)), chair)
     options = {parameter.name: parameter.option for parameter in found.parameters if parameter.option}
@@ -194,28 +192,40 @@ def test_a_wrong_unit_is_not_hidden(model: CompiledModel) -> None:
 # ---------------------------------------------------------------------- cancelling
 
 
-def cancelling(at: int) -> Progress:
-    seen = 0
+def cancelling(part: str, after: int = 0) -> Progress:
+    """Cancel at a report whose message has a part, or some reports later."""
+    reached = 0
 
     def report(fraction: float, message: str) -> None:
-        nonlocal seen
-        seen += 1
-        if seen >= at:
+        nonlocal reached
+        reached += reached > 0 or part in message
+        if reached > after:
             raise Cancelled
 
     return CallbackProgress(report)
 
 
-@pytest.mark.parametrize("at", [1, 2, 3, 5, 8, 12, 16])
-def test_cancelled_at_any_report_the_best_so_far_is_the_answer(
-    query: TriangleMesh, rivals: list[CompiledModel], found: Estimation, at: int
+@pytest.mark.parametrize("part", ["preparing the query", "first orientations"])
+def test_cancelled_before_there_is_anything_there_is_no_answer(
+    query: TriangleMesh, rivals: list[CompiledModel], part: str
 ) -> None:
     with pytest.raises(EstimationCancelled) as caught:
-        run(query, rivals, cancelling(at))
+        run(query, rivals, cancelling(part))
+    assert caught.value.best is None
+
+
+@pytest.mark.parametrize(
+    ("part", "after"),
+    [("first fits", 0), ("first fits", 3), ("closer fits", 1), ("options", 2), ("dense fits", 0), ("polish", 3),
+     ("judging", 0), ("judging", 1)],
+)  # fmt: skip
+def test_cancelled_at_any_moment_the_best_so_far_is_the_answer(
+    query: TriangleMesh, rivals: list[CompiledModel], found: Estimation, part: str, after: int
+) -> None:
+    with pytest.raises(EstimationCancelled) as caught:
+        run(query, rivals, cancelling(part, after))
     best = caught.value.best
-    if best is None:
-        assert at <= 3  # before the first candidates
-        return
+    assert best is not None
     assert not best.complete
     compiled = next(one for one in rivals if one.model is best.model)
     np.testing.assert_array_equal(compiled.settle(best.values[None])[0], best.values)
@@ -224,6 +234,7 @@ def test_cancelled_at_any_report_the_best_so_far_is_the_answer(
     expected = placed(compiled, best.values, best.pose)
     np.testing.assert_allclose(best.mesh.vertices, expected.vertices, atol=1e-9 * POSE.scale)
     assert [stage.name for stage in best.stages] == ["start", "fit", "polish"][: len(best.stages)]
+    assert all(parameter.status is not None for parameter in best.parameters if not parameter.option)
     best.to_dict()
 
 
