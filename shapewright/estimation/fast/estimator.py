@@ -1,6 +1,6 @@
 """The fast estimator: the same layers, distances and verdict as the reference, and a better search (ours)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -59,12 +59,12 @@ class FastEstimator:
         work: _Work | None = None
         try:
             steady.report(0.0, "preparing the query")
-            work = _Work(query, compiled, settings)
+            work = _Work(query, compiled, settings, steady.repeat)
             steady.report(0.02, "first orientations")
             work.search.report = lambda fraction, message: steady.report(_SEARCHING * fraction, message)
             work.search.run(np.random.default_rng(settings.seed))
             steady.report(_SEARCHING, "judging the fit")
-            answer = work.judged()
+            answer = work.judged(steady.repeat)
             steady.report(1.0, "estimated")
             return answer
         except Cancelled as cancelled:
@@ -74,8 +74,14 @@ class FastEstimator:
 class _Work:
     """One query: its preparation, its search, and the answer that can be made of it at any moment."""
 
-    def __init__(self, query: Query, compiled: Sequence[CompiledModel], settings: EstimationSettings) -> None:
-        self._prepared = PreparedQuery(query, settings)
+    def __init__(
+        self,
+        query: Query,
+        compiled: Sequence[CompiledModel],
+        settings: EstimationSettings,
+        checkpoint: Callable[[], None],
+    ) -> None:
+        self._prepared = PreparedQuery(query, settings, checkpoint)
         self._comparisons = [Comparison(self._prepared, model, settings) for model in compiled]
         target = Target(self._prepared.mesh, self._prepared.zbuffer, np.random.default_rng(settings.seed))
         known = [_known(comparison) for comparison in self._comparisons]
@@ -127,9 +133,14 @@ class _Work:
             combinations=determination.combinations,
         )
 
-    def judged(self) -> Estimation:
-        """Answer with everything: the last fit, where the surfaces part, and what else would fit."""
+    def judged(self, checkpoint: Callable[[], None]) -> Estimation:
+        """Answer with everything: the last fit, where the surfaces part, and what else would fit.
+
+        Args:
+            checkpoint: called between steps; may raise to stop.
+        """
         self._follow()
+        checkpoint()
         answer = self.answer(complete=True)
         assert answer is not None
         number = next(k for k, comparison in enumerate(self._comparisons) if comparison.generator.model is answer.model)
@@ -140,6 +151,7 @@ class _Work:
             answer.mesh,
             region_names=regions.names,
             regions=regions.of_instance(model, answer.values),
+            checkpoint=checkpoint,
         )
         assert answer.verdict is not None
         return replace(
