@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from cli.client import Client
 
 SAMPLE = Path(__file__).resolve().parent.parent / "examples" / "goblet.ply"
-READY_WITHIN_S = 60.0
+READY_WITHIN_S = 300.0
 VIEWS = 30
 """More than usual: the few pictures that the demo trains with leave single views unsure."""
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import pytest
+from hypothesis import HealthCheck, settings
 from runtime_types import check_library
 from services import PostgresServer, RedisServer, ServiceMissingError, find_chromium
 
@@ -16,6 +17,10 @@ REPOSITORY = Path(__file__).resolve().parent.parent
 T = TypeVar("T")
 
 check_library(REPOSITORY / "shapewright")
+
+# An example may take long on a busy machine.
+settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("patient")
 
 
 def _or_skip(start: Callable[[], T]) -> T:

@@ -14,6 +14,7 @@ from chair_model import armchair
 from command_line import write_lamp_model
 from PIL import Image
 from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
+from waiting import PATIENCE_S
 
 from cli.client import Client, connected
 from cli.local_service import local_service
@@ -31,9 +32,8 @@ CHROMIUM_ARGUMENTS = [
     "--enable-unsafe-swiftshader",
     "--ignore-gpu-blocklist",
 ]
-START_TIMEOUT_S = 60.0
-PICTURE_TIMEOUT_S = 30.0
-JOB_TIMEOUT_MS = 180_000
+PATIENCE_MS = 1000 * PATIENCE_S
+expect.set_options(timeout=PATIENCE_MS)
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def site(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     lamp_file, crate_file = write_lamp_model(folder), _write_crate_model(folder)
     with (
         local_service(folder / "data", port=0, log=folder / "service.log") as document,
-        connected(document["url"], ready_within_s=START_TIMEOUT_S) as client,
+        connected(document["url"], ready_within_s=PATIENCE_S) as client,
     ):
         lamp, _ = client.post_document("/v1/models", lamp_file.read_text())
         crate, _ = client.post_document("/v1/models", crate_file.read_text())
@@ -113,6 +113,7 @@ def new_page(browser: Browser, site: Site) -> Iterator[Callable[..., Page]]:
             reduced_motion="reduce",
             base_url=site.url,
         )
+        context.set_default_timeout(PATIENCE_MS)
         contexts.append(context)
         page = context.new_page()
         page.on("pageerror", lambda error: thrown.append(str(error)))
@@ -139,7 +140,7 @@ def lamp_file(site: Site, tmp_path: Path) -> Path:
 def _drawn(page: Page, subject: str) -> Locator:
     """The canvas, once it shows that subject."""
     stage = page.get_by_test_id("stage-canvas")
-    expect(stage).to_have_attribute("data-subject", re.compile(f"^{subject}"), timeout=30_000)
+    expect(stage).to_have_attribute("data-subject", re.compile(f"^{subject}"))
     expect(stage.locator("canvas")).to_be_visible()
     expect(page.locator(".stage-busy")).to_have_attribute("data-busy", "false")
     return stage
@@ -155,7 +156,7 @@ def _shot(stage: Locator, path: Path) -> np.ndarray:
 
 def _picture(stage: Locator, path: Path, wanted: Callable[[np.ndarray], bool] | None = None) -> np.ndarray:
     """What the view shows once it stands still and, if a condition is given, meets it."""
-    deadline = time.monotonic() + PICTURE_TIMEOUT_S
+    deadline = time.monotonic() + PATIENCE_S
     before, now = None, _shot(stage, path)
     while before is None or _changed_share(before, now) > 0 or (wanted is not None and not wanted(now)):
         assert time.monotonic() < deadline, f"the view does not come to show what is expected: {path}"
@@ -257,14 +258,14 @@ def test_a_mesh_is_rebuilt_by_the_best_model_of_its_class(
     path = tmp_path / "found chair.off"
     compiled.instance(compiled.values_from_mapping({"armrests": 0, "back": 2, "leg_length": 1.5})).save(path)
     coarse = {"samples": 200, "surface_points": 50, "image_size": 16, "subdivision_steps": 1, "step_sizes": [0.5]}
-    with connected(site.url, ready_within_s=START_TIMEOUT_S) as client:
+    with connected(site.url, ready_within_s=PATIENCE_S) as client:
         mesh = client.upload("/v1/meshes", path)
         body = {"mesh_id": mesh["id"], "class_name": "chair", "settings": coarse}
         accepted = client.post("/v1/estimations", body)
         client.follow(accepted["job"])
     page = new_page(f"#/estimations/{accepted['id']}")
     result = page.get_by_test_id("estimation-result")
-    expect(result).to_be_visible(timeout=30_000)
+    expect(result).to_be_visible()
     expect(result.get_by_test_id("models-tried")).to_contain_text("Rebuilt with Armchair, out of 2 models")
     table = result.get_by_test_id("parameter-table")
     expect(table.get_by_role("row", name="Back")).to_contain_text("high back")
@@ -277,7 +278,7 @@ def test_a_mesh_is_rebuilt_by_the_best_model_of_its_class(
         page.get_by_role("button", name="Estimate parameters").click()
     assert asked.value.post_data_json["class_name"] == "chair"
     page.get_by_test_id("job-progress").get_by_role("button", name="Cancel").click()
-    expect(page.get_by_test_id("job-progress")).to_have_count(0, timeout=JOB_TIMEOUT_MS)
+    expect(page.get_by_test_id("job-progress")).to_have_count(0)
 
 
 def test_thumbnails_come_when_they_are_drawn(new_page: Callable[..., Page]) -> None:
@@ -285,7 +286,6 @@ def test_thumbnails_come_when_they_are_drawn(new_page: Callable[..., Page]) -> N
     page.wait_for_function(
         "() => { const all = [...document.querySelectorAll('.thumbnail img')];"
         " return all.length === 4 && all.every((image) => image.naturalWidth > 0); }",
-        timeout=60_000,
     )
     expect(page.get_by_test_id("thumbnail-fallback")).to_have_count(0)
 
@@ -321,7 +321,7 @@ def test_from_an_unknown_mesh_to_its_parameters(new_page: Callable[..., Page], l
     page.screenshot(path=tmp_path / "learning.png")
     page.get_by_role("button", name="Classify", exact=True).click()
     probabilities = page.get_by_test_id("probabilities")
-    expect(probabilities).to_be_visible(timeout=JOB_TIMEOUT_MS)
+    expect(probabilities).to_be_visible()
     expect(page.get_by_test_id("fits").get_by_role("listitem").first).to_contain_text("fitted")
     expect(probabilities.get_by_role("listitem").first).to_contain_text("Lamp")
     expect(page.get_by_test_id("answer")).to_contain_text("Lamp")  # as the class, or as the nearest one
@@ -335,10 +335,10 @@ def test_from_an_unknown_mesh_to_its_parameters(new_page: Callable[..., Page], l
     page.get_by_label("Samples").fill("60")
     page.get_by_role("button", name="Estimate parameters").click()
     progress = page.get_by_role("progressbar", name="Estimating parameters")
-    expect(progress).to_have_attribute("aria-valuenow", re.compile("[1-9]"), timeout=JOB_TIMEOUT_MS)
-    page.screenshot(path=tmp_path / "progress.png")
     result = page.get_by_test_id("estimation-result")
-    expect(result).to_be_visible(timeout=JOB_TIMEOUT_MS)
+    expect(progress.or_(result).first).to_be_visible()
+    page.screenshot(path=tmp_path / "progress.png")
+    expect(result).to_be_visible()
     expect(progress).to_have_count(0)
     assert any(kind.startswith("text/event-stream") for kind in streams)
 
@@ -379,15 +379,15 @@ def test_an_estimation_can_be_cancelled(new_page: Callable[..., Page], lamp_file
     page.get_by_label("Samples").fill("100000")
     start.click()
     job = page.get_by_test_id("job-progress")
-    expect(job).to_have_attribute("data-state", "running", timeout=JOB_TIMEOUT_MS)
+    expect(job).to_have_attribute("data-state", "running")
     job.get_by_role("button", name="Cancel").click()
-    expect(page.get_by_text(re.compile("was cancelled"))).to_be_visible(timeout=JOB_TIMEOUT_MS)
+    expect(page.get_by_text(re.compile("was cancelled"))).to_be_visible()
     expect(job).to_have_count(0)
 
 
 def test_meshes_of_a_class_are_found_in_a_collection(new_page: Callable[..., Page], site: Site, tmp_path: Path) -> None:
     compiled = compile_model(site.lamp)
-    with connected(site.url, ready_within_s=START_TIMEOUT_S) as client:
+    with connected(site.url, ready_within_s=PATIENCE_S) as client:
         for number, length in enumerate((0.6, 1.9)):
             mesh = compiled.instance(compiled.values_from_mapping({"post_length": length}))
             mesh.save(tmp_path / f"lamp {number}.ply")
@@ -404,11 +404,11 @@ def test_meshes_of_a_class_are_found_in_a_collection(new_page: Callable[..., Pag
         page.get_by_role("checkbox", name=name).check()
     page.screenshot(path=tmp_path / "form.png")
     page.get_by_role("button", name="Start indexing").click()
-    expect(page.get_by_role("heading", name="Some furniture")).to_be_visible(timeout=JOB_TIMEOUT_MS)
-    page.get_by_label("Class", exact=True).select_option("Lamp", timeout=JOB_TIMEOUT_MS)
+    expect(page.get_by_role("heading", name="Some furniture")).to_be_visible()
+    page.get_by_label("Class", exact=True).select_option("Lamp")
     page.get_by_role("button", name="Find meshes").click()
     ranking = page.get_by_test_id("ranking")
-    expect(ranking).to_be_visible(timeout=JOB_TIMEOUT_MS)
+    expect(ranking).to_be_visible()
     names = [row.get_by_role("link").inner_text() for row in ranking.get_by_role("listitem").all()]
     assert sorted(names[:2]) == ["lamp 0.ply", "lamp 1.ply"]
     assert len(names) == 4

@@ -55,7 +55,9 @@ def test_damage_reads_as_missing(tmp_path: Path) -> None:
 
 
 @given(place=st.integers(0, 127), byte=st.integers(0, 255))
-@settings(deadline=None, max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    deadline=None, max_examples=300, suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
+)
 def test_a_broken_byte_of_the_header_never_raises(tmp_path: Path, place: int, byte: int) -> None:
     content = bytearray(npy_bytes(ARRAY))
     content[place] = byte

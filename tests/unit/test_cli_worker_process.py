@@ -67,4 +67,4 @@ def test_stop_ends_a_worker_that_will_not_and_its_children(tmp_path: Path) -> No
     stubborn, child = (int(line) for line in _wait_for(pids, 2))
     worker.stop()
     assert not is_alive(stubborn)
-    wait_until(lambda: not isis_alive(child))  # an orphan is reaped by init, which may take a moment
+    wait_until(lambda: not is_alive(child))  # an orphan is reaped by init, which may take a moment

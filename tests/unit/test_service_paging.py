@@ -38,7 +38,12 @@ def clear(live: LiveService) -> None:
         session.execute(delete(JobRow))
 
 
-@settings(max_examples=25, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=25,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
+)
 @given(st.lists(st.integers(0, 3), max_size=25), st.integers(1, 8), st.lists(st.integers(0, 5), max_size=4))
 @example([0] * 12, 4, [])
 def test_a_walk_sees_everything_once(live: LiveService, seconds: list[int], limit: int, arriving: list[int]) -> None:
