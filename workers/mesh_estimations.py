@@ -2,7 +2,7 @@
 
 import time
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import structlog
 
@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 
 log = structlog.get_logger(__name__)
 
-UNEXPECTED = "internal worker error; see its log"
+MESHES_A_PART: Final = 4
+"""So few that a part that is lost costs a minute, and so many that the models are worth being compiled for them."""
+UNEXPECTED: Final = "internal worker error; see its log"
 
 
 class MeshEstimations:

@@ -21,7 +21,6 @@ from workers import mesh_estimations
 from workers.runner import Runner
 from workers.settings import WorkerSettings
 from workers.stopping import StopNotice
-from workers.tasks import estimate_collection
 
 HEIGHTS = (1.8, 0.5, 1.2, 0.9, 1.5)
 COARSE = {
@@ -72,7 +71,7 @@ def parts(site: Site, row: CollectionEstimationRow) -> list[tuple[str, JobState,
 
 
 def test_each_mesh_has_a_row_and_a_broken_one_its_reason(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(estimate_collection, "MESHES_A_PART", 2)
+    monkeypatch.setattr(mesh_estimations, "MESHES_A_PART", 2)
     row = request(site)
     site.artifacts.put(f"meshes/{row.mesh_ids[1]}/source.off", b"OFF\n3 1 0\n0 0 0\n")
     site.artifacts.delete(f"meshes/{row.mesh_ids[2]}/source.off")
@@ -101,7 +100,7 @@ def test_what_breaks_unexpectedly_is_a_row_too(site: Site, monkeypatch: pytest.M
 
 def test_another_worker_takes_parts_and_a_later_attempt_goes_on(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
     """The first attempt is lost after a part of it was done elsewhere."""
-    monkeypatch.setattr(estimate_collection, "MESHES_A_PART", 2)
+    monkeypatch.setattr(mesh_estimations, "MESHES_A_PART", 2)
     monkeypatch.setattr(claims, "QUIET", timedelta(0))
     row = request(site)
     with site.database.writing() as session:

@@ -9,7 +9,7 @@ import pytest
 from small_dataset import rod, slab
 
 from shapewright.distances.alignment import AlignmentSettings
-from shapewright.errors import Cancelled
+from shapewright.errors import Cancelled, EstimationError
 from shapewright.estimation import EstimationSettings
 from shapewright.estimation.many import Work, estimate_files
 from shapewright.modeling import compile_model
@@ -40,7 +40,7 @@ def files(tmp_path: Path) -> dict[str, Path]:
 
 @dataclass(frozen=True)
 class Dying:
-    """Makes a progress that ends its process: each time, or only until a file says that one has died."""
+    """Ends its process where a progress is to be made: each time, or only until a file says that one has died."""
 
     once: Path | None = None
 
@@ -49,7 +49,7 @@ class Dying:
             if self.once is not None:
                 self.once.touch()
             os._exit(1)
-        return CallbackProgress(lambda fraction, message: None)
+        raise EstimationError("it was tried")  # which is quicker than an estimation
 
 
 def test_each_mesh_has_a_row_and_the_broken_ones_their_reason(files: dict[str, Path]) -> None:
@@ -79,8 +79,7 @@ def test_a_process_that_dies_costs_its_own_mesh_at_most(files: dict[str, Path], 
     once = Work([rod(), slab()], COARSE, progress=Dying(tmp_path / "died"))
     outcomes = {one.row.file: one for one in estimate_files(files, once, jobs=2)}
     assert set(outcomes) == set(files)
-    assert outcomes["rod"].row.answer["model"]["name"] == "rod"
-    assert outcomes["slab"].row.answer["model"]["name"] == "slab"
+    assert [outcomes[name].row.error for name in ("rod", "slab")] == ["it was tried"] * 2
 
     always = Work([rod()], COARSE, progress=Dying())
     (outcome,) = estimate_files({"rod": files["rod"]}, always, jobs=2)
