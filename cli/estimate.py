@@ -11,15 +11,15 @@ import typer
 from cli.console import AsJson, print_json, shown_progress, stdout
 from cli.estimation_text import print_estimation
 from cli.sources import load_class, load_compiled, read_object
-from cli.time_limit import Deadline
 from shapewright.errors import EstimationError, MeshFileError
+from shapewright.progress import LimitedProgress
 
 if TYPE_CHECKING:
     from shapewright.estimation.query import Axis, Unit
 
 UNITS = ("mm", "cm", "m", "in")
 AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
-ESTIMATORS = ("reference",)
+ESTIMATORS = ("fast", "reference")
 
 
 def estimate(
@@ -158,7 +158,9 @@ def estimate(
     query = Query(mesh_read, units=unit, up=axis)
     started_s = time.monotonic()
     with shown_progress("estimating") as shown:
-        progress = shown if time_limit_s is None else Deadline(shown, started_s + time_limit_s)
+        progress = LimitedProgress(
+            shown, lambda: time_limit_s is not None and time.monotonic() - started_s >= time_limit_s
+        )
         try:
             estimation = run_estimation(query, generators, settings, progress=progress)
         except EstimationCancelled as cancelled:

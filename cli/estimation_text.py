@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 LAYERS = {
-    1: "The nearest random variation; refining it did not come close enough to the mesh.",
+    1: "The proportions are those of the nearest instance, but its surface does not lie close enough to the mesh.",
     2: "The surfaces lie close together, but seen from all sides the two differ more than they should.",
     3: "The fit looks like the mesh from all sides.",
 }
@@ -69,7 +69,8 @@ def _tried(document: Mapping[str, Any]) -> Iterator[str]:
     others = [one["model"]["name"] for one in document["tried"] if one["distances"] is None]
     yield f"Models fitted, best first: {', '.join(fitted)}."
     if others:
-        yield f"Not fitted, as others were nearer: {', '.join(others)}."
+        reason = "as others were nearer" if document["complete"] else "as others were nearer or their turn had not come"
+        yield f"Not fitted, {reason}: {', '.join(others)}."
 
 
 def _nearness(tried: Mapping[str, Any]) -> str:
@@ -78,7 +79,10 @@ def _nearness(tried: Mapping[str, Any]) -> str:
 
 def _verdict(document: Mapping[str, Any]) -> Iterator[str]:
     layer, verdict = document["layer"], document["verdict"]
-    yield f"[bold]Layer {layer} of 3.[/] {LAYERS[layer]}"
+    if layer < 3 and not document["complete"] and not (verdict and verdict["failed"]):
+        yield f"[bold]Layer {layer} of 3.[/] The search had not come to the layers above."
+    else:
+        yield f"[bold]Layer {layer} of 3.[/] {LAYERS[layer]}"
     for failed in verdict["failed"] if verdict else ():
         name, value, threshold = THRESHOLDS[failed["name"]], failed["value"], failed["threshold"]
         yield f"  The {name} is {value:.3g}; it should be below {threshold:g}."

@@ -256,11 +256,13 @@ _SHARES = {
 def _print(estimator: str, figures: Mapping[str, Any]) -> None:
     from rich.table import Table
 
-    table = Table("class", "n", "layer 3", "layer 1", "z-buffer", "surface", "seconds", box=None, pad_edge=False)
+    columns = "class", "n", "layer 3", "layer 1", "z-buffer", "surface", "seconds", "processor s"
+    table = Table(*columns, box=None, pad_edge=False)
     for name, row in figures["per_class"].items():
         third, first = (f"{row['layer_share'][layer]:.0%}" for layer in "31")
         distances = f"{row['zbuffer_median']:.3f}", f"{row['surface_median']:.4f}"
-        table.add_row(name, str(row["n"]), third, first, *distances, f"{row['seconds_median']:.1f}")
+        seconds = f"{row['seconds_median']:.1f}", f"{row['processor_seconds_median']:.1f}"
+        table.add_row(name, str(row["n"]), third, first, *distances, *seconds)
     stdout().print(table)
     layers = ", ".join(f"layer {layer} {share:.1%}" for layer, share in sorted(figures["layer_share"].items())[::-1])
     typer.echo(

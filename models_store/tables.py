@@ -8,6 +8,7 @@ from sqlalchemy import (
     BigInteger,
     DateTime,
     Dialect,
+    Double,
     Enum,
     ForeignKey,
     Index,
@@ -212,10 +213,11 @@ class ClassificationRow(Base):
 
 
 class EstimationRow(Base):
-    """Which parameter values rebuild a mesh; ``result`` and ``mesh_key`` are set once.
+    """Which parameter values rebuild a mesh; ``result`` and the keys are set once.
 
     Asked for with a class, ``model_ids`` are the models of the class then, and ``model_id`` comes with the result.
-    ``units`` and ``up`` say what is known about the coordinates of the mesh.
+    ``units`` and ``up`` say what is known about the coordinates of the mesh; after ``time_limit_s`` the best answer
+    until then is taken.
     """
 
     __tablename__ = "estimations"
@@ -229,9 +231,11 @@ class EstimationRow(Base):
     model_ids: Mapped[list[str] | None]
     units: Mapped[str | None] = mapped_column(String(2))
     up: Mapped[str | None] = mapped_column(String(2))
+    time_limit_s: Mapped[float | None] = mapped_column(Double)
     settings: Mapped[dict[str, Any]]
     result: Mapped[dict[str, Any] | None]
     mesh_key: Mapped[str | None] = mapped_column(Text)
+    residuals_key: Mapped[str | None] = mapped_column(Text)
     created_at: Mapped[datetime]
     job: Mapped[JobRow] = relationship(lazy="joined", innerjoin=True)
 

@@ -1,8 +1,10 @@
 """Progress that is injected: long loops report to it, callers decide what becomes of the report."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
+
+from shapewright.errors import Cancelled
 
 
 @runtime_checkable
@@ -50,3 +52,29 @@ class PartialProgress:
         """Report the share of the whole job to the parent."""
         bounded = min(max(fraction, 0.0), 1.0)
         self.parent.report(self.start + bounded * (self.end - self.start), message)
+
+
+@dataclass
+class LimitedProgress:
+    """Hands reports on until a limit is reached, then cancels the work; the clock is the caller's.
+
+    Attributes:
+        parent: told everything before the limit.
+        is_over: whether the limit is reached.
+        reached: whether the work was cancelled for it.
+    """
+
+    parent: Progress
+    is_over: Callable[[], bool]
+    reached: bool = field(default=False, init=False)
+
+    def report(self, fraction: float, message: str) -> None:
+        """Report to the parent.
+
+        Raises:
+            Cancelled: the limit is reached, or the parent cancels.
+        """
+        if self.is_over():
+            self.reached = True
+            raise Cancelled("the time is up")
+        self.parent.report(fraction, message)

@@ -3,7 +3,6 @@
 import json
 import socket
 import threading
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ import httpx
 import pytest
 import uvicorn
 from fastapi import FastAPI
+from waiting import PATIENCE_S
 
 from models_store import claims
 from models_store.jobs import get_job
@@ -90,14 +90,6 @@ class LiveService:
         assert self.artifacts() == []
 
 
-def eventually(check: Callable[[], bool]) -> None:
-    """Wait for what is done after an answer."""
-    until = time.monotonic() + 20
-    while not check():
-        assert time.monotonic() < until
-        time.sleep(0.01)
-
-
 @contextmanager
 def running(data_dir: Path, **settings: Any) -> Iterator[LiveService]:
     """Run the service on a free port in a thread of this process."""
@@ -109,12 +101,12 @@ def running(data_dir: Path, **settings: Any) -> Iterator[LiveService]:
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]}, daemon=True)
         thread.start()
         try:
-            with httpx.Client(base_url=f"http://127.0.0.1:{listener.getsockname()[1]}", timeout=30) as client:
+            with httpx.Client(base_url=f"http://127.0.0.1:{listener.getsockname()[1]}", timeout=PATIENCE_S) as client:
                 client.get("/healthz").raise_for_status()
                 yield LiveService(app, client, data_dir)
         finally:
             server.should_exit = True
-            thread.join(20)
+            thread.join(PATIENCE_S)
     assert not thread.is_alive()
 
 

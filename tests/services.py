@@ -26,8 +26,8 @@ import psycopg
 import redis
 from redis.backoff import NoBackoff
 from redis.retry import Retry
+from waiting import PATIENCE_S
 
-START_TIMEOUT_S = 60.0
 PORT_ATTEMPTS = 3
 
 
@@ -74,7 +74,7 @@ def _die_with_parent() -> None:
 def _wait_until_ready(
     process: "subprocess.Popen[bytes]", log: Path, probe: Callable[[], None], errors: type[Exception]
 ) -> None:
-    deadline = time.monotonic() + START_TIMEOUT_S
+    deadline = time.monotonic() + PATIENCE_S
     while True:
         try:
             probe()

@@ -3,16 +3,17 @@
 import os
 import subprocess
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 from uuid import uuid4
 
 import numpy as np
 from services import logged_process
+from waiting import wait_until
 
 from models_store import catalog
 from models_store.artifacts import ArtifactStore
@@ -24,9 +25,16 @@ from models_store.tables import EstimationRow, JobRow
 from shapewright.modeling import ProceduralModel, Recorder, compile_model
 
 REPOSITORY = Path(__file__).resolve().parent.parent
-QUICK = {"subdivision_steps": 0, "surface_points": 50, "image_size": 16, "step_sizes": [1.0]}
+QUICK = {
+    "estimator": "reference",
+    "subdivision_steps": 0,
+    "surface_points": 50,
+    "image_size": 16,
+    "step_sizes": [1.0],
+}
 """Settings of an estimation that takes a second beside its bank, which takes about one for 1000 samples."""
-TIMEOUT_S = 90.0
+ENDLESS = 10_000_000
+"""Samples of an estimation that does not end while a test runs."""
 
 
 def now() -> datetime:
@@ -55,13 +63,14 @@ class Site:
     """One installation: a database, artefacts, a broker, and a way to start workers on them."""
 
     def __init__(self, folder: Path, **settings: Any) -> None:
-        given = {"lease_s": 2.0, "wakeup_after_s": 0.5, **settings}
+        given = {"wakeup_after_s": 0.5, **settings}
         self.settings = StoreSettings(data_dir=folder / "data", **given)
         self.database = Database.connect(self.settings)
         upgrade(self.database.engine)
         self.artifacts = ArtifactStore.open(self.settings.artifacts_url)
         self.sender = create_sender(self.settings)
-        self.log = folder / "worker.log"
+        self._folder = folder
+        self._logs: list[Path] = []
         self._environment = {
             **os.environ,
             "PYTHONPATH": str(REPOSITORY),
@@ -77,11 +86,18 @@ class Site:
 
     @contextmanager
     def worker(self, **environment: str) -> Iterator["subprocess.Popen[bytes]"]:
-        """A worker as people start it, until the end of the block."""
+        """A worker as people start it, until the end of the block. It is ready for jobs when the block begins."""
         command = [sys.executable, "-m", "celery", "-A", "workers.app", "worker", "-n", f"{uuid4().hex}@%h"]
         env = self._environment | environment
-        with logged_process(command, log=self.log, cwd=self.settings.data_dir, env=env) as process:
+        log = self._folder / f"worker-{len(self._logs)}.log"
+        self._logs.append(log)
+        with logged_process(command, log=log, cwd=self.settings.data_dir, env=env) as process:
+            wait_until(lambda: process.poll() is not None or " ready." in log.read_text(), self.log)
             yield process
+
+    def log(self) -> str:
+        """What all workers of the site have written so far."""
+        return "".join(path.read_text(errors="replace") for path in self._logs)
 
     def add_model(self, model: ProceduralModel) -> str:
         with self.database.writing() as session:
@@ -94,9 +110,15 @@ class Site:
         return job.id
 
     def queue_estimation(
-        self, samples: int, *, height: float = 1.4, send: bool = True, **options: Any
+        self,
+        samples: int,
+        *,
+        height: float = 1.4,
+        send: bool = True,
+        changes: Mapping[str, Any] = MappingProxyType({}),
+        **options: Any,
     ) -> EstimationRow:
-        """Queue a quick estimation of a brick of this height, by the brick."""
+        """Queue a quick estimation of a brick of this height, by the brick; ``changes`` are other settings."""
         compiled = compile_model(brick())
         query = compiled.instance(np.array([height]), steps=0)
         mesh, _ = catalog.store_mesh(
@@ -104,7 +126,7 @@ class Site:
             file_name="query.off", file_type="off", mesh=query, now=now(),
         )  # fmt: skip
         model_id = self.add_model(brick())
-        settings = {**QUICK, "samples": samples}
+        settings = {**QUICK, "samples": samples, **changes}
         with self.database.writing() as session:
             row = catalog.request_estimation(session, mesh.id, model_id, settings, now=now(), **options)
         if send:
@@ -121,17 +143,26 @@ class Site:
 
     def wait(self, job_id: str, until: Callable[[JobRow], bool] = lambda job: job.state.is_final) -> JobRow:
         """Wait until the job is as wished (default: ended)."""
-        deadline = time.monotonic() + TIMEOUT_S
-        while not until(job := self.job(job_id)):
-            if time.monotonic() > deadline:
-                log = self.log.read_text(errors="replace")[-4000:] if self.log.exists() else ""
-                raise AssertionError(f"job is {job.state} at {job.progress_fraction}\n{log}")
-            time.sleep(0.05)
+
+        def found() -> JobRow | None:
+            job = self.job(job_id)
+            fits = until(job)
+            assert fits or not job.state.is_final, f"job has ended: {job.state}\n{self.log()[-4000:]}"
+            return job if fits else None
+
+        job = wait_until(found, lambda: f"job is {self.job(job_id).state}\n{self.log()[-4000:]}")
+        assert job is not None
         return job
 
     def wait_until_working(self, job_id: str) -> JobRow:
         """Wait until the job is in the middle of its work."""
         return self.wait(job_id, lambda job: job.state is JobState.RUNNING and job.progress_fraction > 0)
+
+    def shorten(self, estimation_id: str) -> None:
+        """Let the next attempt of an endless estimation take a second or two."""
+        with self.database.writing() as session:
+            row = catalog.get_estimation(session, estimation_id)
+            row.settings = {**row.settings, "samples": 40}
 
     def states(self, job_id: str) -> list[str]:
         """The states that the job has gone through."""
@@ -142,16 +173,3 @@ class Site:
 
     def close(self) -> None:
         self.database.close()
-
-
-def children_of(process: "subprocess.Popen[bytes]") -> list[int]:
-    path = Path(f"/proc/{process.pid}/task/{process.pid}/children")
-    return [int(pid) for pid in path.read_text().split()]
-
-
-def is_alive(pid: int) -> bool:
-    """Whether a process runs; a zombie that waits for init does not."""
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
-    except FileNotFoundError:
-        return False

@@ -25,6 +25,7 @@ def request_estimation(
     class_name: str | None = None,
     units: str | None = None,
     up: str | None = None,
+    time_limit_s: float | None = None,
     now: datetime,
     max_attempts: int = 3,
 ) -> EstimationRow:
@@ -38,6 +39,7 @@ def request_estimation(
         class_name: without a model, the class whose models (as they are now) are tried.
         units: unit of the mesh's coordinates, as :class:`shapewright.estimation.Query` has it.
         up: axis of the mesh's file that points up.
+        time_limit_s: seconds after which the best answer until then is taken.
         now: the time, with a zone.
         max_attempts: of the job.
 
@@ -64,6 +66,7 @@ def request_estimation(
         model_ids=model_ids,
         units=units,
         up=up,
+        time_limit_s=time_limit_s,
         settings=settings,
         created_at=now,
     )
@@ -72,12 +75,19 @@ def request_estimation(
     return row
 
 
-def record_estimation(session: Session, identifier: str, result: dict[str, Any], mesh_key: str | None) -> None:
+def record_estimation(
+    session: Session,
+    identifier: str,
+    result: dict[str, Any],
+    mesh_key: str | None,
+    residuals_key: str | None = None,
+) -> None:
     """Write the parameter values and which model they belong to; in the transaction that ends the job."""
     row = get_estimation(session, identifier)
     row.model_id = result["model"]["id"]
     row.result = result
     row.mesh_key = mesh_key
+    row.residuals_key = residuals_key
 
 
 def get_estimation(session: Session, identifier: str) -> EstimationRow:

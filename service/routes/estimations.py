@@ -6,6 +6,7 @@ from fastapi import APIRouter, BackgroundTasks, Depends, Request, Response
 
 from models_store import catalog
 from models_store.errors import NotFoundError
+from models_store.tables import EstimationRow
 from service.conditional import immutable_response
 from service.dependencies import CursorQuery, IdPath, LimitQuery, ServicesDep, now, require_json
 from service.errors import Problem, ProblemError, reference_error
@@ -42,6 +43,7 @@ def create_estimation(services: ServicesDep, response: Response, after: Backgrou
                 class_name=body.class_name,
                 units=body.units,
                 up=body.up,
+                time_limit_s=body.time_limit_s,
                 now=now(),
                 max_attempts=services.settings.max_attempts,
             )
@@ -76,10 +78,36 @@ def get_estimation_mesh(request: Request, services: ServicesDep, id: IdPath) -> 
     """The fitted mesh in the query's own coordinates; 404 until there is one."""
     with services.database.reading() as session:
         row = catalog.get_estimation(session, id)
-    key = row.mesh_key
-    if key is None:
-        state = row.job.state.value
-        raise ProblemError(
-            Problem(404, "not-ready", "It is not ready yet", f"no mesh is fitted: this estimation is {state}")
-        )
+    key = _key(row, row.mesh_key)
     return immutable_response(request, f"{id}-mesh", glb.MEDIA_TYPE, lambda: services.artifacts.get(key))
+
+
+@router.get(
+    "/{id}/residuals",
+    response_class=Response,
+    responses={
+        **binary(glb.MEDIA_TYPE, "A scene with the nodes `fit` and `query`, colored."),
+        **NOT_MODIFIED,
+        **problems(404, 422),
+    },
+)
+def get_estimation_residuals(request: Request, services: ServicesDep, id: IdPath) -> Response:  # noqa: A002
+    """Where the query and the fitted mesh part, as vertex colors; 404 until there is a fitted mesh.
+
+    Yellow lies on the other surface; dark violet is four times the tolerance away from it, or more. Both meshes are in
+    the query's own coordinates.
+    """
+    with services.database.reading() as session:
+        row = catalog.get_estimation(session, id)
+    key = _key(row, row.residuals_key)
+    return immutable_response(request, f"{id}-residuals", glb.MEDIA_TYPE, lambda: services.artifacts.get(key))
+
+
+def _key(row: EstimationRow, key: str | None) -> str:
+    """The key of an artefact of an estimation, or the problem that it is not there."""
+    if key is None:
+        detail = f"no mesh is fitted: this estimation is {row.job.state.value}"
+        if row.mesh_key is not None:
+            detail = "this estimation was made before residuals were kept"
+        raise ProblemError(Problem(404, "not-ready", "It is not ready yet", detail))
+    return key

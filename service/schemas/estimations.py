@@ -17,7 +17,10 @@ Interval = Annotated[list[float], Field(min_length=2, max_length=2)]
 
 
 class EstimationSettingsIn(InBody):
-    """Settings of an estimation; what is left out keeps the library's default (paper section 3.3)."""
+    """Settings of an estimation; what is left out keeps the library's default (paper section 3.3).
+
+    Those of random instances, points, pictures and steps are the reference's.
+    """
 
     samples: Annotated[int, Field(ge=1, le=1_000_000)] | None = Field(
         default=None, description="Random instances of layer 1."
@@ -44,8 +47,9 @@ class EstimationSettingsIn(InBody):
         default=None, description="Of several models, how many the reference takes through all layers."
     )
     seed: Seed | None = None
-    estimator: Literal["reference"] | None = Field(
-        default=None, description="Which estimator works; `reference` is the paper, step by step."
+    estimator: Literal["fast", "reference"] | None = Field(
+        default=None,
+        description="Which estimator works: `fast` (the default), or `reference`, the paper step by step.",
     )
 
     def checked(self) -> dict[str, Any]:
@@ -77,6 +81,9 @@ class EstimationIn(InBody):
         description="Unit of the mesh's coordinates: lengths come in it, and the scale of the fit is known.",
     )
     up: Axis | None = Field(default=None, description="The axis of the mesh's file that points up.")
+    time_limit_s: Annotated[float, Field(gt=0, le=86_400)] | None = Field(
+        default=None, description="Seconds of work after which the best answer until then is taken."
+    )
     settings: EstimationSettingsIn = Field(default_factory=EstimationSettingsIn)
 
 
@@ -241,9 +248,13 @@ class EstimationOut(OutBody):
     model_ids: list[str] = Field(description="The models that are tried.")
     units: str | None = Field(description="Unit of the mesh's coordinates, if it was given.")
     up: str | None = Field(description="Axis of the mesh's file that points up, if it was given.")
+    time_limit_s: float | None = Field(description="Seconds of work that it may take, if that was limited.")
     settings: dict[str, Any]
     result: EstimationResultOut | None
     mesh_url: str | None = Field(description="The fitted mesh as GLB, in the query's coordinates.")
+    residuals_url: str | None = Field(
+        description="Mesh and fit as GLB, colored by how far each part of them is from the other."
+    )
     job_id: str
     created_at: Moment
 
@@ -260,9 +271,11 @@ class EstimationOut(OutBody):
             model_ids=[row.model_id] if row.model_ids is None and row.model_id is not None else row.model_ids or [],
             units=row.units,
             up=row.up,
+            time_limit_s=row.time_limit_s,
             settings=row.settings,
             result=result,
             mesh_url=f"/v1/estimations/{row.id}/mesh" if row.mesh_key else None,
+            residuals_url=f"/v1/estimations/{row.id}/residuals" if row.residuals_key else None,
             job_id=row.job_id,
             created_at=row.created_at,
         )

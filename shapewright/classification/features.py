@@ -1,9 +1,6 @@
 """Features of pictures with ONNX Runtime, batch by batch."""
 
-import platform
-from functools import cache
-from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 import onnxruntime
@@ -16,9 +13,6 @@ BATCH_SIZE = 10
 """The views of one object. Larger batches were slower and took more memory: 8, 16 and 32 pictures needed 4.8, 5.0
 and 5.8 ms of processor each."""
 THREADS = 2
-PRECISE_INTEGERS: Final = ("session.x64quantprecision", "1")
-"""ONNX Runtime multiplies unsigned by signed bytes with sums of 16 bits on x86 processors without VNNI instructions,
-and these overflow; with this entry it takes a slower way there, to the same numbers as VNNI."""
 
 
 def make_session(graph: bytes, *, threads: int = THREADS) -> Any:
@@ -33,20 +27,7 @@ def make_session(graph: bytes, *, threads: int = THREADS) -> Any:
     options.log_severity_level = 4
     # Threads that spin between batches would take the cores from the renderer.
     options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-    if not _integers_are_precise():
-        options.add_session_config_entry(*PRECISE_INTEGERS)
     return onnxruntime.InferenceSession(graph, options, providers=["CPUExecutionProvider"])
-
-
-@cache
-def _integers_are_precise(cpu_facts: Path = Path("/proc/cpuinfo")) -> bool:
-    """Whether products of bytes do not overflow: no x86 processor, or one with VNNI instructions."""
-    if platform.machine().lower() not in ("x86_64", "amd64"):
-        return True
-    try:
-        return "vnni" in cpu_facts.read_text()
-    except OSError:
-        return False
 
 
 class FeatureExtractor:

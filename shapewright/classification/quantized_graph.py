@@ -1,6 +1,7 @@
 """The backbone in 8 bits: weights per channel, activations by ranges that were measured once (static QDQ).
 
 ONNX Runtime fuses each ``DequantizeLinear → Conv → QuantizeLinear`` into an integer convolution (Jacob et al. 2018).
+Its sums are exact on every processor, see :mod:`shapewright.classification.quantized_weights`.
 The pictures are bytes already: with the scale 1 / 128 and the zero point 127 they are the first activation as they
 are, and nothing is converted.
 """
@@ -14,6 +15,7 @@ from onnx import helper
 from shapewright.classification.efficientnet_lite import Convolution
 from shapewright.classification.file_format import FEATURES, IMAGES
 from shapewright.classification.graphs import constant, features_model
+from shapewright.classification.quantized_weights import quantize_weights
 
 Ranges = Mapping[str, tuple[float, float]]
 """Smallest and largest activation of each tensor ``conv<number>`` and ``sum<number>`` of the float graph."""
@@ -50,11 +52,9 @@ class _Writer:
 
     def convolution(self, number: int, layer: Convolution, current: str, input_scale: float) -> str:
         """Add one convolution without its clipping, which the quantisation of its result does."""
-        largest = np.abs(layer.weight).reshape(len(layer.weight), -1).max(axis=1)
         # a channel of (nearly) nothing but its bias must not push that out of the 32-bit integers
-        needed = np.abs(layer.bias.astype(np.float64)) / (input_scale * 2.0**30)
-        scales = np.maximum(np.where(largest > 0, largest / 127.0, 1.0), needed).astype(np.float32)
-        weight = np.round(layer.weight / scales[:, None, None, None]).astype(np.int8)
+        smallest = np.abs(layer.bias.astype(np.float64)) / (input_scale * 2.0**30)
+        weight, scales = quantize_weights(layer.weight, smallest)
         bias = np.round(layer.bias / (input_scale * scales.astype(np.float64))).astype(np.int32)
         for name, values, factors in (
             (f"w{number}", weight, scales),

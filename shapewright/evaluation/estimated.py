@@ -104,7 +104,7 @@ def estimate_cases(
     models: Mapping[str, CompiledModel],
     settings: EstimationSettings,
     *,
-    estimate_query: EstimateQuery = estimate,
+    estimate_query: EstimateQuery | None = None,
     jobs: int = 1,
     progress: Progress = NULL_PROGRESS,
 ) -> EstimatedQueries:
@@ -115,10 +115,11 @@ def estimate_cases(
         count: how many cases there are, for the progress.
         models: by name; those that the cases name.
         settings: of the estimator.
-        estimate_query: what estimates.
+        estimate_query: what estimates; the library's estimators if not given.
         jobs: processes; with 1 the work is done here. Each has its own compiled models.
         progress: told of every case; may cancel.
     """
+    estimate_query = estimate if estimate_query is None else estimate_query
     outcomes: dict[int, Estimated | Skipped] = {}
     kept: dict[int, tuple[str, str, Truth | None]] = {}
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from shapewright.mesh import TriangleMesh
 from shapewright.modeling import CompiledModel
 
 
+@runtime_checkable
 class Cases(Protocol):
     """Queries that can be gone through more than once; the same ones come each time."""
 

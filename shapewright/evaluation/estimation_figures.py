@@ -27,7 +27,6 @@ def estimation_figures(estimated: Sequence[Estimated]) -> dict[str, Any]:
     return {
         **_summed(estimated),
         "seconds_p95": _quantile((one.answer.seconds for one in estimated), 0.95),
-        "processor_seconds_median": _quantile((one.answer.processor_seconds for one in estimated), 0.5),
         "per_class": {name: _summed(members) for name, members in by_class(estimated).items()},
         "distances_by_stage": {
             stage: {name: _distribution(values) for name, values in distances.items()}
@@ -83,6 +82,7 @@ def _summed(estimated: Sequence[Estimated]) -> dict[str, Any]:
         "under_0_35": float((zbuffer < GOOD).mean()),
         "under_0_1": float((zbuffer < EXACT).mean()),
         "seconds_median": _quantile((one.answer.seconds for one in estimated), 0.5),
+        "processor_seconds_median": _quantile((one.answer.processor_seconds for one in estimated), 0.5),
     }
 
 

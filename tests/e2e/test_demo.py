@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from waiting import PATIENCE_S
 
 from shapewright.mesh.file import load_mesh
 
@@ -21,7 +22,6 @@ def _environment() -> dict[str, str]:
     return {name: value for name, value in os.environ.items() if not name.startswith("SHAPEWRIGHT_")}
 
 
-@pytest.mark.timeout(300)
 def test_the_demo_once_on_its_sample(repository: Path, tmp_path: Path) -> None:
     coarse = tmp_path / "coarse.json"
     coarse.write_text('{"surface_points": 100, "image_size": 32, "step_sizes": [0.5]}')
@@ -54,7 +54,6 @@ def test_the_demo_once_on_its_sample(repository: Path, tmp_path: Path) -> None:
     assert leftover == [], "the service's folder was temporary"
 
 
-@pytest.mark.timeout(300)
 def test_it_keeps_serving_and_uses_a_kept_folder_again(tmp_path: Path) -> None:
     coarse = tmp_path / "coarse.json"
     coarse.write_text('{"surface_points": 50, "image_size": 16, "subdivision_steps": 0, "step_sizes": [0.5]}')
@@ -81,7 +80,7 @@ def test_it_keeps_serving_and_uses_a_kept_folder_again(tmp_path: Path) -> None:
     with urllib.request.urlopen(address) as answer:
         assert b"<html" in answer.read().lower()
     process.send_signal(signal.SIGINT)
-    process.communicate(timeout=60)
+    process.communicate(timeout=PATIENCE_S)
     assert process.returncode == 0
     with pytest.raises(OSError, match="refused"):
         urllib.request.urlopen(address)

@@ -41,7 +41,6 @@ def run(code: str, names: dict[str, Any]) -> dict[str, Any]:
     return names
 
 
-@pytest.mark.timeout(300)
 def test_classify_and_rebuild(
     repository: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -7,7 +7,6 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +14,8 @@ from typing import Any
 
 import pytest
 from command_line import write_lamp_model
+from processes import children_of, is_alive
+from waiting import PATIENCE_S, wait_until
 
 from cli.client import Client, ServiceError, connected
 from cli.local_service import local_service
@@ -34,34 +35,18 @@ def serving(tmp_path: Path) -> Iterator[Serving]:
     log = tmp_path / "service.log"
     with (
         local_service(tmp_path / "data", port=0, log=log) as document,
-        connected(document["url"], ready_within_s=30.0) as client,
+        connected(document["url"], ready_within_s=PATIENCE_S) as client,
     ):
         yield Serving(document, log, client)
 
 
-def _process_is_gone(pid: int, timeout_s: float = 20.0) -> bool:
-    deadline = time.monotonic() + timeout_s
-    while time.monotonic() < deadline:
-        try:
-            if Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] == "Z":
-                return True
-        except (FileNotFoundError, ProcessLookupError):
-            return True
-        time.sleep(0.05)
-    return False
-
-
-def _children(pid: int) -> list[int]:
-    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
-
-
-def _thumbnail(client: Client, model_id: str, timeout_s: float = 60.0) -> bytes:
-    deadline = time.monotonic() + timeout_s
-    while time.monotonic() < deadline:
+def _thumbnail(client: Client, model_id: str) -> bytes:
+    def drawn() -> bytes:
         with contextlib.suppress(ServiceError):
             return client.get_bytes(f"/v1/models/{model_id}/thumbnail")
-        time.sleep(0.2)
-    raise AssertionError("no thumbnail")
+        return b""
+
+    return wait_until(drawn)
 
 
 def test_a_model_gets_its_thumbnail_also_after_the_worker_was_killed(serving: Serving, tmp_path: Path) -> None:
@@ -97,11 +82,11 @@ def test_one_signal_ends_all_of_it(tmp_path: Path, request_to_stop: signal.Signa
         assert line, process.stderr.read() if process.stderr else ""
         text += line
     worker = json.loads(text)["worker_pid"]
-    everybody = [process.pid, worker, *_children(worker)]
+    everybody = [process.pid, worker, *children_of(worker)]
     process.send_signal(request_to_stop)
-    _, messages = process.communicate(timeout=40)
+    _, messages = process.communicate(timeout=PATIENCE_S)
     assert process.returncode == 0, messages.decode()
-    assert all(_process_is_gone(pid) for pid in everybody)
+    wait_until(lambda: not any(is_alive(pid) for pid in everybody))
 
 
 def test_a_busy_port_is_one_line(tmp_path: Path) -> None:

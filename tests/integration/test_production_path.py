@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import yaml
 from services import free_port, logged_process
+from waiting import PATIENCE_S
 
 from cli.client import Client, connected
 from shapewright.mesh import TriangleMesh
@@ -51,7 +52,6 @@ def _glass(model: "ProceduralModel") -> tuple[TriangleMesh, dict[str, float]]:
 
 
 @pytest.mark.services
-@pytest.mark.timeout(300)
 def test_the_whole_path_on_postgresql_and_redis(
     repository: Path,
     tmp_path: Path,
@@ -72,7 +72,7 @@ def test_the_whole_path_on_postgresql_and_redis(
     folder.mkdir()
     with (
         logged_process(api, log=tmp_path / "api.log", cwd=folder, env=environment),
-        connected(f"http://127.0.0.1:{port}", ready_within_s=60.0) as client,
+        connected(f"http://127.0.0.1:{port}", ready_within_s=PATIENCE_S) as client,
         logged_process(_command(repository, "worker"), log=tmp_path / "worker.log", cwd=folder, env=environment),
     ):
         try:

@@ -2,7 +2,6 @@
 
 import os
 import signal
-import time
 from collections.abc import Iterator
 from contextlib import closing
 from io import BytesIO
@@ -11,15 +10,22 @@ from urllib.request import urlopen
 
 import pytest
 from PIL import Image
+from processes import children_of, is_alive
 from services import RedisServer, free_port
-from worker_support import Site, brick, children_of, is_alive, now, rod
+from waiting import PATIENCE_S, wait_until
+from worker_support import ENDLESS, Site, brick, now, rod
 
 from models_store import catalog
 from models_store.broker import send_wakeup
 from models_store.jobs import JobState, list_jobs, request_cancel
+from models_store.tables import JobRow
 from shapewright.mesh.file import parse_mesh
 
 KINDS = ["embedded", pytest.param("production", marks=pytest.mark.services)]
+
+
+SHORT_LEASE_S = "2"
+"""Lease of a job whose worker is killed in a test."""
 
 
 @pytest.fixture(params=KINDS)
@@ -38,6 +44,13 @@ def embedded(tmp_path: Path) -> Iterator[Site]:
     made = Site(tmp_path)
     yield made
     made.close()
+
+
+def assert_done_by_a_later_attempt(site: Site, done: JobRow) -> None:
+    """However many attempts were lost (on a busy machine a short lease may run out): one succeeded, the last."""
+    assert done.state is JobState.SUCCEEDED, done.error_detail
+    assert done.attempt >= 2
+    assert site.states(done.id) == [*["queued", "running"] * done.attempt, "succeeded"]
 
 
 def test_jobs_are_done_and_leave_their_results(site: Site) -> None:
@@ -65,44 +78,42 @@ def test_jobs_are_done_and_leave_their_results(site: Site) -> None:
     assert parameter["value"] == pytest.approx(1.4, abs=0.1)
     assert len(parse_mesh(site.artifacts.get(row.mesh_key), "glb").faces) > 4
     assert site.states(estimation.job_id) == ["queued", "running", "succeeded"]
-    log = site.log.read_text()
+    log = site.log()
     assert f'"job_id": "{estimation.job_id}"' in log
     assert "Traceback" not in log
 
 
 def test_a_job_whose_worker_child_is_killed_is_done_once(site: Site) -> None:
-    with site.worker() as worker:
-        estimation = site.queue_estimation(800)
+    with site.worker(SHAPEWRIGHT_LEASE_S=SHORT_LEASE_S) as worker:
+        estimation = site.queue_estimation(ENDLESS, max_attempts=100)
         site.wait_until_working(estimation.job_id)
-        (child,) = children_of(worker)
+        site.shorten(estimation.id)
+        (child,) = children_of(worker.pid)
         os.kill(child, signal.SIGKILL)
         done = site.wait(estimation.job_id)
-        time.sleep(1.0)  # nobody comes back and does it again
-    assert (done.state, done.attempt) == (JobState.SUCCEEDED, 2)
-    assert site.states(estimation.job_id) == ["queued", "running", "queued", "running", "succeeded"]
-    assert site.estimation(estimation.id).mesh_key == f"estimations/{estimation.id}-2.glb"
+        # nobody comes back and does it again: whatever was announced before this is through when it is done
+        site.wait(site.queue_thumbnail(site.add_model(rod())))
+    assert_done_by_a_later_attempt(site, done)
+    assert site.estimation(estimation.id).mesh_key == f"estimations/{estimation.id}-{done.attempt}.glb"
 
 
 def test_a_job_of_a_worker_that_is_killed_is_done_by_the_next(embedded: Site) -> None:
-    estimation = embedded.queue_estimation(800)
-    with embedded.worker() as worker:
+    estimation = embedded.queue_estimation(ENDLESS, max_attempts=100)
+    with embedded.worker(SHAPEWRIGHT_LEASE_S=SHORT_LEASE_S) as worker:
         embedded.wait_until_working(estimation.job_id)
-        children = children_of(worker)
+        embedded.shorten(estimation.id)
+        children = children_of(worker.pid)
         worker.kill()
         worker.wait()
-        deadline = time.monotonic() + 20
-        while any(is_alive(pid) for pid in children):
-            assert time.monotonic() < deadline, "a child outlives its worker"
-            time.sleep(0.05)
-    with embedded.worker():
+        wait_until(lambda: not any(is_alive(pid) for pid in children), lambda: "a child outlives its worker")
+    with embedded.worker(SHAPEWRIGHT_LEASE_S=SHORT_LEASE_S):
         done = embedded.wait(estimation.job_id)
-    assert (done.state, done.attempt) == (JobState.SUCCEEDED, 2)
-    assert embedded.states(estimation.job_id) == ["queued", "running", "queued", "running", "succeeded"]
+    assert_done_by_a_later_attempt(embedded, done)
 
 
 def test_a_cancelled_estimation_stops_and_keeps_its_best(embedded: Site) -> None:
     with embedded.worker():
-        estimation = embedded.queue_estimation(200_000)
+        estimation = embedded.queue_estimation(ENDLESS)
         embedded.wait_until_working(estimation.job_id)
         with embedded.database.writing() as session:
             request_cancel(session, estimation.job_id, now=now())
@@ -114,12 +125,12 @@ def test_a_cancelled_estimation_stops_and_keeps_its_best(embedded: Site) -> None
 
 
 def test_a_worker_that_is_told_to_stop_gives_its_job_back(embedded: Site) -> None:
-    estimation = embedded.queue_estimation(200_000, max_attempts=1)
+    estimation = embedded.queue_estimation(ENDLESS, max_attempts=1)
     with embedded.worker(SHAPEWRIGHT_SHUTDOWN_GRACE_S="0.2") as worker:
         embedded.wait_until_working(estimation.job_id)
-        children = children_of(worker)
+        children = children_of(worker.pid)
         worker.send_signal(signal.SIGTERM)
-        assert worker.wait(30) == 0
+        assert worker.wait(PATIENCE_S) == 0
     assert not any(is_alive(pid) for pid in children)
     job = embedded.job(estimation.job_id)
     assert (job.state, job.attempt) == (JobState.QUEUED, 0)
@@ -131,7 +142,7 @@ def test_a_busy_worker_keeps_no_message_from_a_free_one(tmp_path: Path, postgres
     site = Site(tmp_path, database_url=postgres_url, broker_url=redis_url, wakeup_after_s=600.0)
     model_id = site.add_model(brick())
     with closing(site), site.worker():
-        estimation = site.queue_estimation(200_000)
+        estimation = site.queue_estimation(ENDLESS)
         site.wait_until_working(estimation.job_id)
         with site.worker():
             for _ in range(4):
@@ -166,14 +177,14 @@ def test_a_job_waits_for_the_broker_to_come_back(tmp_path: Path) -> None:
     site = Site(tmp_path, broker_url=server.url)
     try:
         model_id = site.add_model(brick())
+        # No job before this one: an announcement that a worker has taken already makes it look for any job.
         with site.worker():
-            assert site.wait(site.queue_thumbnail(model_id)).state is JobState.SUCCEEDED
             server.stop()
             with site.database.writing() as session:
                 job = catalog.request_thumbnail(session, model_id, now=now())
             assert send_wakeup(site.sender, job) is False
-            time.sleep(2.0)  # sweeps come and go
-            assert site.job(job.id).state is JobState.QUEUED
+            wait_until(lambda: f"broker away, job {job.id} stays queued" in site.log(), site.log)
+            assert site.states(job.id) == ["queued"]
             server = RedisServer.start(server.port)
             assert site.wait(job.id).state is JobState.SUCCEEDED
     finally:

@@ -1,5 +1,6 @@
 """The tasks themselves, run in this process: what they keep, what they reuse, what they say when it fails."""
 
+import itertools
 import shutil
 import time
 from collections.abc import Callable, Iterator
@@ -11,7 +12,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 from PIL import Image
+from waiting import wait_until
 from worker_support import QUICK, Site, brick, now, rod
 
 from models_store import catalog
@@ -25,6 +28,7 @@ from shapewright.classification.exemplars import Exemplars
 from shapewright.estimation import EstimationSettings, PanoramaBank, estimate
 from shapewright.mesh.file import parse_mesh
 from shapewright.modeling import ProceduralModel, Recorder, compile_model
+from workers.context import JobContext, WorkerProgress
 from workers.runner import Runner
 from workers.settings import WorkerSettings
 from workers.stopping import StopNotice
@@ -96,6 +100,43 @@ def test_an_estimation_for_a_class_finds_the_model_and_keeps_every_bank(site: Si
     for model in models:
         (path,) = (Path(site.settings.data_dir) / "artifacts" / "banks" / model).iterdir()
         assert len(PanoramaBank.load(path)) == 30
+
+
+def test_the_fast_estimator_needs_no_bank_and_its_residuals_are_kept(site: Site) -> None:
+    row = site.queue_estimation(20, send=False, changes={"estimator": "fast"})
+    run(site, row.job_id)
+    assert site.job(row.job_id).state is JobState.SUCCEEDED, site.job(row.job_id).error_detail
+    done = site.estimation(row.id)
+    assert done.result["estimator"] == "fast"
+    assert 0 < done.result["verdict"]["residuals"]["followed_share"] <= 1
+    assert not (Path(site.settings.data_dir) / "artifacts" / "banks").exists()
+    scene = trimesh.load(BytesIO(site.artifacts.get(done.residuals_key)), file_type="glb")
+    assert set(scene.geometry) == {"fit", "query"}
+    query = parse_mesh(site.artifacts.get(f"meshes/{row.mesh_id}/source.off"), "off")
+    assert np.allclose(scene.geometry["query"].bounds, query.bounds, atol=1e-6)
+    colors = scene.geometry["query"].visual.vertex_colors
+    assert len(np.unique(colors, axis=0)) > 1, "its corners are farther from the rounded fit than its sides"
+
+
+def test_when_the_time_is_over_the_best_until_then_is_the_answer(
+    site: Site, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ticks = itertools.count()
+    monkeypatch.setattr(JobContext, "seconds", property(lambda context: float(next(ticks))))
+    row = site.queue_estimation(2000, send=False, time_limit_s=8.0)
+    run(site, row.job_id)
+    job, done = site.job(row.job_id), site.estimation(row.id)
+    assert (job.state, job.error_detail) == (JobState.SUCCEEDED, None)
+    assert not done.result["complete"]
+    assert done.mesh_key is not None
+
+
+def test_an_estimation_with_no_time_at_all_says_so(site: Site) -> None:
+    row = site.queue_estimation(20, send=False, time_limit_s=1e-9)
+    run(site, row.job_id)
+    job = site.job(row.job_id)
+    assert (job.state, job.error_where) == (JobState.FAILED, "time_limit_s")
+    assert "time was over" in job.error_detail
 
 
 def test_a_damaged_bank_is_built_anew(site: Site) -> None:
@@ -268,14 +309,17 @@ def test_a_training_with_one_class_more_computes_that_class_alone(site: Site) ->
     assert (other.models("features"), other.models("panoramas")) == (known, set())
 
 
-def test_a_cancelled_training_goes_on_where_it_was(site: Site) -> None:
+def test_a_cancelled_training_goes_on_where_it_was(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
     first = queue_training(site, [brick(), rod()])
+    begun: list[WorkerProgress] = []
+    enter = WorkerProgress.__enter__
+    monkeypatch.setattr(WorkerProgress, "__enter__", lambda self: begun.append(self) or enter(self))
 
     def cancel(key: str) -> None:
         if key.startswith("features/"):
             with site.database.writing() as session:
                 request_cancel(session, first.job_id, now=now())
-            time.sleep(1.0)  # the heartbeat hears of it
+            wait_until(lambda: begun[-1]._cancelled)  # the heartbeat has heard of it
 
     stopped, rest = Watched(site.artifacts, cancel), Watched(site.artifacts)
     run(site, first.job_id, stopped)

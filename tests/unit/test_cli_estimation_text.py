@@ -1,7 +1,6 @@
-"""What a shell says of an estimation, and how long it lets one run."""
+"""What a shell says of an estimation."""
 
 import io
-import time
 from typing import Any, get_args
 
 import numpy as np
@@ -12,15 +11,14 @@ from rich.console import Console
 from cli import estimate as verb
 from cli.estimation_text import LAYERS, print_estimation
 from cli.report import STATUS_TEXTS
-from cli.time_limit import Deadline
-from shapewright.errors import Cancelled
-from shapewright.estimation import EstimationCancelled, EstimationSettings, estimate
+from shapewright.estimation import EstimationSettings, estimate
 from shapewright.estimation.query import AXES, UNITS
 from shapewright.estimation.result import Layer, ParameterStatus
 from shapewright.estimation.settings import EstimatorName
-from shapewright.progress import NULL_PROGRESS
 
-COARSE = EstimationSettings(samples=20, surface_points=100, image_size=16, model_points="vertices", step_sizes=(0.5,))
+COARSE = EstimationSettings(
+    samples=20, surface_points=100, image_size=16, model_points="vertices", step_sizes=(0.5,), estimator="reference"
+)
 
 
 @pytest.fixture(scope="module")
@@ -90,11 +88,18 @@ def test_what_is_known_stands_beside_each_value(document: dict[str, Any]) -> Non
         assert expected in text
 
 
-def test_a_time_limit_cancels_and_the_best_so_far_is_there() -> None:
-    generator = EllGenerator("length")
-    query = generator.mesh(np.array([1.2]))
-    with pytest.raises(Cancelled):
-        Deadline(NULL_PROGRESS, time.monotonic()).report(0.5, "working")
-    with pytest.raises(EstimationCancelled) as caught:
-        estimate(query, generator, COARSE, progress=Deadline(NULL_PROGRESS, time.monotonic()))
-    assert caught.value.best is None
+def test_a_stopped_search_says_what_it_did_not_reach(document: dict[str, Any]) -> None:
+    tried = [
+        {"model": {"id": "a", "name": "cup"}, "distances": document["distances"], "panorama": 0.1},
+        {"model": {"id": "b", "name": "mug"}, "distances": None, "panorama": None},
+    ]
+    stopped = {
+        **document,
+        "layer": 1,
+        "complete": False,
+        "tried": tried,
+        "verdict": {"layer": 1, "failed": [], "residuals": None},
+    }
+    text = printed(stopped)
+    assert "had not come to the layers above" in text
+    assert "Not fitted, as others were nearer or their turn had not come: mug." in text

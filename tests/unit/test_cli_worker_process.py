@@ -3,8 +3,10 @@
 import os
 import sys
 import threading
-import time
 from pathlib import Path
+
+from processes import is_alive
+from waiting import PATIENCE_S, wait_until
 
 from cli.worker_process import GIVE_UP_AFTER, WorkerProcess
 
@@ -13,21 +15,9 @@ def _program(source: str) -> list[str]:
     return [sys.executable, "-c", source]
 
 
-def _wait_for(path: Path, lines: int, timeout_s: float = 30.0) -> list[str]:
-    deadline = time.monotonic() + timeout_s
-    while time.monotonic() < deadline:
-        if path.exists() and len(path.read_text().splitlines()) >= lines:
-            return path.read_text().splitlines()
-        time.sleep(0.05)
-    raise AssertionError(f"{path} has not got {lines} lines")
-
-
-def _alive(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    return True
+def _wait_for(path: Path, lines: int) -> list[str]:
+    wait_until(lambda: path.exists() and path.read_text().count("\n") >= lines)
+    return path.read_text().splitlines()
 
 
 def test_a_worker_that_dies_is_reported_and_started_again(tmp_path: Path) -> None:
@@ -43,7 +33,7 @@ def test_a_worker_that_dies_is_reported_and_started_again(tmp_path: Path) -> Non
     finally:
         worker.stop()
     assert "died (status -9)" in told[0]
-    assert not any(_alive(int(pid)) for pid in starts.read_text().split())
+    assert not any(is_alive(int(pid)) for pid in starts.read_text().split())
 
 
 def test_a_worker_that_keeps_dying_is_given_up() -> None:
@@ -57,7 +47,7 @@ def test_a_worker_that_keeps_dying_is_given_up() -> None:
 
     worker = WorkerProcess(_program("raise SystemExit(3)"), os.environ, say, pause_s=0.01)
     worker.start()
-    assert given_up.wait(30.0)
+    assert given_up.wait(PATIENCE_S)
     worker.stop()
     assert len(told) == GIVE_UP_AFTER
     assert "status 3" in told[-1]
@@ -76,8 +66,5 @@ def test_stop_ends_a_worker_that_will_not_and_its_children(tmp_path: Path) -> No
     worker.start()
     stubborn, child = (int(line) for line in _wait_for(pids, 2))
     worker.stop()
-    assert not _alive(stubborn)
-    deadline = time.monotonic() + 10.0  # an orphan is reaped by init, which may take a moment
-    while _alive(child) and Path(f"/proc/{child}/stat").read_text().split()[2] != "Z":
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
+    assert not is_alive(stubborn)
+    wait_until(lambda: not isis_alive(child))  # an orphan is reaped by init, which may take a moment

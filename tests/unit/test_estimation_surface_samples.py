@@ -27,7 +27,7 @@ def samples(chair: CompiledModel) -> SurfaceSamples:
 @pytest.mark.parametrize("name", list(list_shipped()))
 def test_a_base_instance_passes_both_thresholds_against_itself(name: str) -> None:
     compiled = compile_model(load_shipped(name))
-    settings = EstimationSettings()
+    settings = EstimationSettings(image_size=64)
     instance = compiled.instance(compiled.base_values())
     comparison = Comparison(PreparedQuery(Query(instance), settings), compiled, settings)
     own = comparison.instance(compiled.base_values())

@@ -11,12 +11,13 @@ from shapewright.distances.surface import uniform_points
 from shapewright.evaluation.anew import cut_anew
 from shapewright.evaluation.edge_cutting import cut_edges, cut_some_edges
 from shapewright.mesh import TriangleMesh
+from shapewright.modeling import compile_model
 
 SHIPPED = ("table", "sword_sabre", "spider_ant", "bicycle")
 
 
 def shipped(name: str) -> TriangleMesh:
-    compiled = load_shipped(name).compile()
+    compiled = compile_model(load_shipped(name))
     return compiled.instance(compiled.random_values(np.random.default_rng(3), 1)[0])
 
 

@@ -10,6 +10,7 @@ import httpx
 import pytest
 from httpx_sse import ServerSentEvent, connect_sse
 from service_support import LiveService, problem, running, service, shared_service, tetrahedron
+from waiting import PATIENCE_S
 
 from models_store import claims, parts
 from models_store.claims import Claim
@@ -141,7 +142,7 @@ class Watcher(threading.Thread):
 
     def run(self) -> None:
         with (
-            httpx.Client(base_url=self.service.client.base_url, timeout=30) as client,
+            httpx.Client(base_url=self.service.client.base_url, timeout=PATIENCE_S) as client,
             connect_sse(client, "GET", self.url) as source,
         ):
             for event in source.iter_sse():
@@ -151,7 +152,7 @@ class Watcher(threading.Thread):
 
     def wait_for(self, count: int) -> None:
         with self._more:
-            assert self._more.wait_for(lambda: len(self.events) >= count, timeout=20)
+            assert self._more.wait_for(lambda: len(self.events) >= count, timeout=PATIENCE_S)
 
 
 def test_a_stream_goes_along_with_the_job_and_ends_with_it(service: LiveService) -> None:
@@ -166,7 +167,7 @@ def test_a_stream_goes_along_with_the_job_and_ends_with_it(service: LiveService)
         report(service, held, step / 10)
     finish(service, held)
     for watcher in watchers:
-        watcher.join(20)
+        watcher.join(PATIENCE_S)
         assert not watcher.is_alive()
         assert words(watcher.events) == words(follow(service, job_id))
         assert len(watcher.events) == 13
@@ -188,7 +189,7 @@ def test_parts_are_listed_with_their_job_and_a_stream_ends_with_a_withdrawn_one(
     watcher.wait_for(1)
     with service.services.database.writing() as session:
         assert parts.withdraw_part(session, ids[0])
-    watcher.join(20)
+    watcher.join(PATIENCE_S)
     assert not watcher.is_alive()
     assert words(watcher.events) == [("state", "queued")]
     problem(service.client.get(f"/v1/jobs/{ids[0]}"), 404)

@@ -15,6 +15,7 @@ from pydantic import BaseModel
 from schemathesis import GenerationMode
 from schemathesis.checks import load_all_checks
 from service_support import LiveService, box, running, tetrahedron
+from waiting import PATIENCE_S
 
 from models_store import catalog
 from models_store.job_kinds import JobKind
@@ -215,10 +216,10 @@ def test_whatever_is_sent_the_answer_is_as_described(
     @settings(max_examples=5, derandomize=True, deadline=None, database=None, suppress_health_check=list(HealthCheck))
     @given(case=operation.as_strategy(generation_mode=mode))
     def check(case: schemathesis.Case) -> None:
-        case.call_and_validate(base_url=base_url, checks=CHECKS, timeout=20)
+        case.call_and_validate(base_url=base_url, checks=CHECKS, timeout=PATIENCE_S)
         if "id" in case.path_parameters and resource in known_ids:
             case.path_parameters["id"] = known_ids[resource]
-            response = case.call(base_url=base_url, timeout=20)
+            response = case.call(base_url=base_url, timeout=PATIENCE_S)
             assert response.status_code < 500
             operation.validate_response(response)
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import httpx
 from service_support import box, tetrahedron
 from services import free_port, logged_process
+from waiting import PATIENCE_S
 
 HEAVY = ("torch", "moderngl", "numba", "llvmlite", "onnxruntime", "onnx", "workers", "cli", "matplotlib")
 
@@ -47,7 +48,7 @@ def test_the_api_loads_what_evaluates_models_when_asked_and_nothing_else_that_is
     repository: Path, tmp_path: Path
 ) -> None:
     command = [sys.executable, "-c", PROGRAM, str(tmp_path / "data"), str(repository / "tests"), ",".join(HEAVY)]
-    run = subprocess.run(command, cwd=repository, capture_output=True, text=True, timeout=120, check=False)
+    run = subprocess.run(command, cwd=repository, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
     told = json.loads(run.stdout.splitlines()[-1])
     evaluates = ["numba", "llvmlite"]
@@ -74,7 +75,7 @@ def test_a_server_that_is_stopped_ends_its_streams(repository: Path, tmp_path: P
     transport = httpx.HTTPTransport(retries=8)
     with (
         logged_process(command, log=tmp_path / "api.log", cwd=tmp_path, env=environment) as process,
-        httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=30, transport=transport) as client,
+        httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=PATIENCE_S, transport=transport) as client,
     ):
         model = client.post("/v1/models", json=box()).json()
         mesh = client.post("/v1/meshes", files={"file": ("a.off", tetrahedron())}).json()
@@ -89,7 +90,7 @@ def test_a_server_that_is_stopped_ends_its_streams(repository: Path, tmp_path: P
                     pass
             except httpx.RemoteProtocolError:
                 pass  # the stream is cut: a client comes back with the last id it saw
-        process.wait(timeout=60)
+        process.wait(timeout=PATIENCE_S)
     log = (tmp_path / "api.log").read_text()
     assert "Application shutdown complete" in log
     assert "Traceback" not in log

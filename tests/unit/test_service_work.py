@@ -9,13 +9,13 @@ from service_support import (
     NOWHERE,
     LiveService,
     box,
-    eventually,
     problem,
     running,
     service,
     shared_service,
     tetrahedron,
 )
+from waiting import PATIENCE_S, wait_until
 
 from models_store import catalog
 from models_store.broker import QUEUE
@@ -235,28 +235,35 @@ def estimation_result(model_id: str, name: str = "box") -> dict[str, Any]:
 def test_an_estimation_is_accepted_and_its_answer_comes(service: LiveService) -> None:
     mesh, model = service.upload(tetrahedron()).json(), service.add_model()
     settings = {"samples": 50, "subdivision_steps": 1, "step_sizes": [1.0, 0.1], "estimator": "reference"}
-    body = {"mesh_id": mesh["id"], "model_id": model["id"], "units": "mm", "up": "+y", "settings": settings}
+    body = {"mesh_id": mesh["id"], "model_id": model["id"], "units": "mm", "up": "+y"}
+    body |= {"time_limit_s": 2.5, "settings": settings}
     accepted = service.client.post("/v1/estimations", json=body).json()
     waiting = service.client.get(accepted["url"]).json()
     assert (waiting["state"], waiting["result"], waiting["mesh_url"]) == ("queued", None, None)
     assert (waiting["mesh_id"], waiting["model_id"]) == (mesh["id"], model["id"])
     assert waiting["settings"] == settings
-    assert (waiting["units"], waiting["up"]) == ("mm", "+y")
+    assert (waiting["units"], waiting["up"], waiting["time_limit_s"]) == ("mm", "+y", 2.5)
+    assert waiting["residuals_url"] is None
+    problem(service.client.get(f"{accepted['url']}/residuals"), 404)
     problem(service.client.get(f"{accepted['url']}/mesh"), 404)
 
     fitted = parse_mesh(tetrahedron(), "off").to_bytes("glb")
     service.services.artifacts.put("estimations/one.glb", fitted)
+    service.services.artifacts.put("estimations/one-residuals.glb", b"colored")
     record = partial(
         catalog.record_estimation,
         identifier=accepted["id"],
         result=estimation_result(model["id"]),
         mesh_key="estimations/one.glb",
+        residuals_key="estimations/one-residuals.glb",
     )
     service.work(accepted["job"]["id"], record)
     done = service.client.get(accepted["url"]).json()
     assert (done["state"], done["result"]) == ("succeeded", estimation_result(model["id"]))
     content = service.client.get(done["mesh_url"])
     assert (content.content, content.headers["content-type"]) == (fitted, GLB)
+    colored = service.client.get(done["residuals_url"])
+    assert (colored.content, colored.headers["content-type"]) == (b"colored", GLB)
     assert service.client.get("/v1/estimations").json()["items"] == [done]
 
 
@@ -301,6 +308,7 @@ def test_an_estimation_for_a_class_says_which_model_it_found(service: LiveServic
         ({"settings": {"model_points": "edges"}}, "settings.model_points"),
         ({"units": "furlong"}, "units"),
         ({"up": "z"}, "up"),
+        ({"time_limit_s": 0}, "time_limit_s"),
     ],
 )
 def test_an_estimation_that_makes_no_sense_is_refused(shared_service: LiveService, change: Any, where: str) -> None:
@@ -333,14 +341,14 @@ def test_without_a_broker_the_job_is_accepted_and_stays_queued(tmp_path) -> None
             "artifacts": True,
             "broker": False,
         }
-        eventually(lambda: "shapewright_wakeups_lost_total 3.0" in live.client.get("/metrics").text)
+        wait_until(lambda: "shapewright_wakeups_lost_total 3.0" in live.client.get("/metrics").text)
 
 
 def test_a_wakeup_is_in_the_queue_when_the_job_is_accepted(service: LiveService) -> None:
     service.client.post("/v1/classifiers", json={"model_ids": two_models(service)}).raise_for_status()
     with service.services.celery.connection_for_read() as connection:
         queue = connection.SimpleQueue(QUEUE)
-        kinds = [queue.get(timeout=5).headers["task"] for _ in range(3)]
+        kinds = [queue.get(timeout=PATIENCE_S).headers["task"] for _ in range(3)]
         queue.close()
     assert sorted(kinds) == [
         "shapewright.render_thumbnail",

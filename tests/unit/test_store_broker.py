@@ -1,6 +1,5 @@
 """The broker carries wake-ups; one that is away is an answer, not an error."""
 
-import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from queue import Empty
@@ -51,13 +50,11 @@ def test_a_wakeup_arrives_once(settings: StoreSettings) -> None:
         assert taken(connection) == []
 
 
-def test_a_broker_server_that_is_away_is_said_soon(tmp_path: Path) -> None:
+def test_a_broker_server_that_is_away_is_said(tmp_path: Path) -> None:
     settings = StoreSettings(data_dir=tmp_path, broker_url=f"redis://127.0.0.1:{free_port()}/0", broker_timeout_s=0.5)
     sender = create_sender(settings)
-    began = time.monotonic()
     assert send_wakeup(sender, JOB) is False
-    assert not broker_answers(sender)
-    assert time.monotonic() - began < 60  # not "never", which is Celery's default
+    assert not broker_answers(sender)  # and not "never", which is Celery's default
 
 
 def test_an_embedded_broker_that_cannot_be_written(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from types import MappingProxyType
 import pytest
 from sqlalchemy.exc import OperationalError
 from store_support import clock, database, queue_job  # noqa: F401 - fixtures
+from waiting import wait_until
 from worker_support import now
 
 from models_store import claims
@@ -80,13 +81,9 @@ def bench(database: Database, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     return Bench(database, tmp_path / "bench", monkeypatch)
 
 
-def wait_for(report: Callable[[], None], timeout_s: float = 20.0) -> None:
+def wait_for(report: Callable[[], None]) -> None:
     """Report until that raises."""
-    deadline = time.monotonic() + timeout_s
-    while time.monotonic() < deadline:
-        report()
-        time.sleep(0.01)
-    raise AssertionError("nobody stopped the work")
+    wait_until(report, lambda: "nobody stopped the work")
 
 
 def test_every_kind_of_job_has_its_task(tmp_path: Path) -> None:
@@ -213,9 +210,9 @@ def test_a_cancelled_job_may_leave_its_best(bench: Bench) -> None:
 
 def test_the_lease_is_renewed_while_nothing_is_reported(bench: Bench) -> None:
     def task(context: JobContext) -> Outcome:
-        time.sleep(1.5)  # more than two leases without a word, as in a native call
-        with bench.database.writing() as session:
-            assert sweep(session, now=now(), wakeup_after=timedelta(seconds=5)).requeued == []
+        for _ in range(2):  # not a word meanwhile, as in a native call
+            before = bench.job(context.claim.job_id).lease_expires_at
+            wait_until(lambda before=before: bench.job(context.claim.job_id).lease_expires_at > before)
         return Outcome(nothing)
 
     job = bench.job(bench.run(task))
@@ -262,15 +259,18 @@ def test_a_worker_that_stops_gives_the_job_back(bench: Bench) -> None:
 
 def test_progress_is_written_at_most_so_often_and_the_last_is_not_lost(bench: Bench) -> None:
     def task(context: JobContext) -> Outcome:
+        began = time.monotonic()
         for step in range(10_001):
             context.progress.report(step / 10_000, f"step {step}")
-        time.sleep(0.3)
+        wait_until(lambda: bench.job(context.claim.job_id).progress_fraction == 1.0)
+        took.append(time.monotonic() - began)
         return Outcome(nothing)
 
+    took: list[float] = []
     job_id = bench.run(task, progress_interval_s=0.1)
     with bench.database.reading() as session:
         events = [event for event in list_events(session, job_id) if event.type == "progress"]
-    assert 1 <= len(events) < 20
+    assert 1 <= len(events) <= took[0] / 0.1 + 2
     assert events[-1].data == {"fraction": 1.0, "message": "step 10000"}
 
 

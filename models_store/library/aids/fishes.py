@@ -148,7 +148,8 @@ def size_fin(recorder: Recorder, fish: Fish, fins: Sequence[Loft], name: str, *,
     for fin in fins:
         middle = sum(float(recorder.centre(v)[0]) for v in fin.rings[len(fin.rings) // 2][0]) / 4
         rings = fish.body.rings
-        near = min(range(len(rings)), key=lambda i: abs(float(recorder.centre(rings[i][0][0])[0]) - middle))
+        off = [round(abs(float(recorder.centre(ring[0][0])[0]) - middle), 9) for ring in rings]
+        near = min(range(len(rings)), key=lambda i: (off[i], -i))  # of two that are as near, the one ahead
         edge = fish.body.vertex(recorder, near, (0.0, 0.0, way))
         recorder.scale(Target((fin.component.whole,), "world", (), (edge,)), 1.0, "z", size=f"{name}_height")
         for ring in fin.rings:

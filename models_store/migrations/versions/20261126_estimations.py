@@ -1,4 +1,4 @@
-"""Estimations say their model, and a query its unit and its up axis
+"""Estimations say their model, keep their residuals and a time limit, and a query its unit and its up axis
 
 Revision ID: 20261126_estimations
 Revises: 20261125_parts
@@ -27,11 +27,15 @@ _MODELS = sa.table("models", sa.column("id", sa.String), sa.column("name", sa.Te
 def upgrade() -> None:
     op.add_column("estimations", sa.Column("units", sa.String(2), nullable=True))
     op.add_column("estimations", sa.Column("up", sa.String(2), nullable=True))
+    op.add_column("estimations", sa.Column("time_limit_s", sa.Double(), nullable=True))
+    op.add_column("estimations", sa.Column("residuals_key", sa.Text(), nullable=True))
     _rewrite(_with_model)
 
 
 def downgrade() -> None:
     _rewrite(_with_models_tried)
+    op.drop_column("estimations", "residuals_key")
+    op.drop_column("estimations", "time_limit_s")
     op.drop_column("estimations", "up")
     op.drop_column("estimations", "units")
 

@@ -13,6 +13,7 @@ from shapewright.estimation.comparison import Comparison
 from shapewright.estimation.determination.factors import IntervalFactors
 from shapewright.estimation.fast.candidate import Candidate
 from shapewright.estimation.fast.fitted_model import FittedModel
+from shapewright.estimation.fast.following import follow_surface
 from shapewright.estimation.fast.judging import determine_fit
 from shapewright.estimation.fast.measure import fine_distance
 from shapewright.estimation.fast.search import Known, Phase, Search
@@ -80,6 +81,16 @@ class _Work:
         known = [_known(comparison) for comparison in self._comparisons]
         models = [FittedModel(model) for model in compiled]
         self.search = Search(target, models, known, lambda fraction, message: None)
+        self._followed: dict[int, Candidate] = {}
+        self.search.best["start", 0] = self._first_guess()
+
+    def _first_guess(self) -> Candidate:
+        """Return the base instance of the first model, as the paper normalizes it: an answer at once."""
+        comparison, model = self._comparisons[0], self.search.models[0]
+        values = model.settle(model.compiled.base_values())
+        pose = comparison.initial_pose(comparison.instance(values))
+        guess = Candidate(model, values, pose.rotation, pose.translation, pose.scale)
+        return fine_distance(self.search.target, guess)
 
     def answer(self, *, complete: bool) -> Estimation | None:
         """Answer with the best so far; ``None`` before there is any."""
@@ -96,7 +107,8 @@ class _Work:
             scale_known=self._comparisons[number].known_scale is not None,
             factors=IntervalFactors.shipped(),
         )
-        tried = [ModelTried(self._model(other).model, self._distances(candidate)) for other, candidate in best]
+        tried = [ModelTried(self._model(number).model, estimation.distances)]
+        tried += [ModelTried(self._model(other).model, self._distances(candidate)) for other, candidate in best[1:]]
         unseen = set(range(len(self._comparisons))) - {other for other, _ in best}
         tried += [ModelTried(self._model(other).model) for other in sorted(unseen)]
         estimation = replace(estimation, tried=tuple(tried), complete=complete and estimation.complete)
@@ -116,7 +128,8 @@ class _Work:
         )
 
     def judged(self) -> Estimation:
-        """Answer with everything: where the surfaces part, and what else would fit."""
+        """Answer with everything: the last fit, where the surfaces part, and what else would fit."""
+        self._follow()
         answer = self.answer(complete=True)
         assert answer is not None
         number = next(k for k, comparison in enumerate(self._comparisons) if comparison.generator.model is answer.model)
@@ -137,6 +150,13 @@ class _Work:
 
     # ------------------------------------------------------------------ parts of the answer
 
+    def _follow(self) -> None:
+        number, best = self._best_of_models()[0]
+        known = self.search.known[number]
+        self._followed[number] = follow_surface(
+            self.search.target, best, keeps_scale=known.scale is not None, keeps_rotation=known.keeps_rotation
+        )
+
     def _best_of_models(self) -> list[tuple[int, Candidate]]:
         """Return the number and the best candidate of each model that has one, by the distance of the fine surface."""
         search = self.search
@@ -148,7 +168,7 @@ class _Work:
         return sorted(found.items(), key=lambda item: item[1].zbuffer)
 
     def _record(self, number: int) -> Record:
-        """Return the stages of one model; a later stage is at least as good as the ones before it."""
+        """Return the stages of one model; a later one is no worse than those before it, by depth or by surface."""
         record = Record("fast", self._comparisons[number], FAST_STAGES)
         best: Candidate | None = None
         for stage in FAST_STAGES:
@@ -157,6 +177,8 @@ class _Work:
                 candidate = fine_distance(self.search.target, candidate)
                 if best is None or candidate.zbuffer < best.zbuffer:
                     best = candidate
+            if best is not None and stage == FAST_STAGES[-1]:
+                best = self._followed.get(number, best)
             if best is not None and (candidate is not None or stage in self.search.finished):
                 record.put(stage, best.values, best.pose)
             if stage in self.search.finished:
@@ -169,27 +191,25 @@ class _Work:
         return Candidate(model, estimation.values, pose.rotation, pose.translation, pose.scale)
 
     def _alternatives(self, number: int, answer: Estimation) -> tuple[Alternative, ...]:
+        """List what fits about as well; only what is listed is measured by every distance."""
+        symmetry = self._model(number).model.symmetry
+        best = Contender(answer.model, answer.values, answer.parameters, answer.pose, answer.distances, symmetry)
         limit = 1.2 * answer.distances.zbuffer + 0.03
-        near = sorted((one for one in self.search.kept if one.zbuffer < limit), key=lambda one: one.zbuffer)[:16]
-        best = Contender(
-            answer.model,
-            answer.values,
-            answer.parameters,
-            answer.pose,
-            answer.distances,
-            self._model(number).model.symmetry,
-        )
-        return list_alternatives(best, [self._contender(candidate) for candidate in near])
+        near = [one for one in self.search.kept if one.zbuffer < limit]
+        listed = list_alternatives(best, [self._contender(one) for one in near])
+        by_values = {id(one.values): one for one in near}
+        return tuple(replace(one, distances=self._distances(by_values[id(one.values)])) for one in listed)
 
     def _contender(self, candidate: Candidate) -> Contender:
         number = self.search.models.index(candidate.model)
         comparison, model = self._comparisons[number], self._model(number)
+        zbuffer = fine_distance(self.search.target, candidate).zbuffer
         return Contender(
             model.model,
             candidate.values,
             parameter_estimates(model, candidate.values, self._prepared.query),
             comparison.to_file.compose(candidate.pose),
-            self._distances(candidate),
+            Distances(np.nan, np.nan, zbuffer, np.nan),
             model.model.symmetry,
         )
 

@@ -26,6 +26,8 @@ _FAR = 0.3
 """Distances beyond this count no more in the misfit."""
 _LEAST_WIDTH = 0.01
 _SAMPLED_EVERY = 3
+_GAIN, _PATIENCE = 0.003, 1
+"""A round gains if its distance falls by this share; the search ends after more rounds in a row without a gain."""
 _EXACT_SPACING = 0.005
 _ACROSS = 0.1
 """Pairs whose normals are at a right angle cost as much as so large a distance."""
@@ -36,7 +38,7 @@ class Effort:
     """How a least-squares search works.
 
     Attributes:
-        rounds: at most.
+        rounds: at most; fewer if two of them gained nothing.
         points: samples on either side.
         steps: subdivision steps of the surface.
         neighbors: near samples among which each pair is chosen.
@@ -80,46 +82,48 @@ def fit(
         checkpoint: called once a round; may raise to stop.
 
     Returns:
-        The best round: the one with the smallest z-buffer distance if outlines pull, else with the smallest misfit.
+        The best round: the one of the later half with the smallest z-buffer distance if outlines pull, else the one
+        with the smallest misfit.
     """
-    best: Candidate | None = None
     samples = None
-    curvature = candidate.curvature
+    best, stale = candidate, 0
     for number in range(effort.rounds + 1):
         if checkpoint is not None:
             checkpoint()
+        if effort.outline and number >= effort.rounds // 2:
+            candidate = outline_distance(target, candidate)
+            gains = candidate.zbuffer < (1.0 - _GAIN) * best.zbuffer
+            stale = 0 if gains or number == effort.rounds // 2 else stale + 1
+            best = candidate if number == effort.rounds // 2 else min(best, candidate, key=lambda one: one.zbuffer)
+            if number == effort.rounds or stale > _PATIENCE:
+                break
         model = candidate.model
         columns, lowest, highest = model.free_columns(candidate.values)
         rows, differences = _rows_around(candidate, columns, highest)
-        if number == effort.rounds:
-            rows = rows[:1]
         controls = model.compiled.control_points(rows)
         if number % _SAMPLED_EVERY == 0 or samples is None:
-            first_share = (0.5 + 0.618 * number) % 1.0
-            samples = model.samples(controls[0], effort.points, effort.steps, first_share)
+            samples = model.samples(controls[0], effort.points, effort.steps, (0.5 + 0.618 * number) % 1.0)
             if samples is None:
-                return best or candidate
+                break
         matrix, normals = samples
         moves = kernels.sparse_product(matrix, controls)
         matches = _match(target, candidate, effort, np.ascontiguousarray(moves[:, :3]), normals)
-        candidate = replace(candidate, misfit=matches.misfit, curvature=curvature)
-        if effort.outline:
-            candidate = outline_distance(target, candidate)
-        if best is None or (candidate.zbuffer, candidate.misfit) < (best.zbuffer, best.misfit):
-            best = candidate
-        if number == effort.rounds:
-            break
+        if not effort.outline:
+            candidate = replace(candidate, misfit=matches.misfit)
+            stale = 0 if candidate.misfit < (1.0 - _GAIN) * best.misfit or number == 0 else stale + 1
+            best = candidate if number == 0 else min(best, candidate, key=lambda one: one.misfit)
+            if number == effort.rounds or stale > _PATIENCE:
+                break
         system = _surface_system(target, candidate, effort, matches, moves, differences)
         if effort.outline:
             _add_outline(system, target, candidate, effort, controls, differences)
-        curvature = Curvature(columns, system.curvature)
         free = np.ones(len(columns) + 7, dtype=bool)
         free[-1] = not keeps_scale
         free[len(columns) : len(columns) + 3] = not keeps_rotation
         step = _bounded_step(candidate, effort, system, columns, lowest, highest, free)
-        candidate = candidate.moved(columns, step, target.center)
-    assert best is not None
-    return replace(best, curvature=curvature)
+        curvature = Curvature(columns, system.curvature)
+        candidate = replace(candidate.moved(columns, step, target.center), curvature=curvature)
+    return best
 
 
 def _rows_around(

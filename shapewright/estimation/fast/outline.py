@@ -14,7 +14,7 @@ from shapewright.distances.depth_kernels import WINDOW
 from shapewright.distances.rasterize import PASS_FRAMES
 from shapewright.estimation.fast import outline_kernels
 
-_MOST_PIXELS = 20_000
+_MOST_PIXELS = 8_000
 _APART = 100.0
 """Distance between the views in the one search tree that holds them all."""
 _NEIGHBORS = 6

@@ -116,8 +116,8 @@ def add_outline_pairs(rows, offsets, normals, views, frames, spacing, width, sha
 def outline_points(points, triangles, frames, size, window, faces, weights, views, pixels, normals):
     """Find the triangles at the outline of a surface, seen along each direction.
 
-    The surface is drawn into ``size`` x ``size`` pixels, nearest triangle first; a covered pixel beside one that is not
-    covered belongs to the outline.
+    The surface is drawn into ``size`` x ``size`` pixels; a covered pixel beside one that is not covered belongs to the
+    outline. Depth does not matter: whatever covers such a pixel ends there.
 
     Args:
         points: (V, 3).
@@ -136,8 +136,7 @@ def outline_points(points, triangles, frames, size, window, faces, weights, view
     to_pixels = size / (2.0 * window)
     middle = 0.5 * (size - 1)
     n_points = points.shape[0]
-    columns, rows, depths = np.empty(n_points), np.empty(n_points), np.empty(n_points)
-    nearest = np.empty((size, size), np.float32)
+    columns, rows = np.empty(n_points), np.empty(n_points)
     owner = np.empty((size, size), np.int32)
     for view in range(frames.shape[0]):
         frame = frames[view]
@@ -145,33 +144,32 @@ def outline_points(points, triangles, frames, size, window, faces, weights, view
             x, y, z = points[v, 0], points[v, 1], points[v, 2]
             columns[v] = (x * frame[0, 0] + y * frame[0, 1] + z * frame[0, 2]) * to_pixels + middle
             rows[v] = (x * frame[1, 0] + y * frame[1, 1] + z * frame[1, 2]) * to_pixels + middle
-            depths[v] = x * frame[2, 0] + y * frame[2, 1] + z * frame[2, 2]
-        nearest[:] = np.inf
         owner[:] = -1
         low_row, high_row = size, -1
         for f in range(triangles.shape[0]):
             a, b, c = triangles[f, 0], triangles[f, 1], triangles[f, 2]
             ax, bx, cx = columns[a], columns[b], columns[c]
+            first_column, last_column = max(0, int(np.ceil(min(ax, bx, cx)))), min(size - 1, int(max(ax, bx, cx)))
+            if first_column > last_column:
+                continue
             ay, by, cy = rows[a], rows[b], rows[c]
+            first_row, last_row = max(0, int(np.ceil(min(ay, by, cy)))), min(size - 1, int(max(ay, by, cy)))
+            if first_row > last_row:
+                continue
             area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
             if area == 0.0:
                 continue
-            first_column, last_column = max(0, int(np.ceil(min(ax, bx, cx)))), min(size - 1, int(max(ax, bx, cx)))
-            first_row, last_row = max(0, int(np.ceil(min(ay, by, cy)))), min(size - 1, int(max(ay, by, cy)))
-            if first_column > last_column or first_row > last_row:
-                continue
             low_row, high_row = min(low_row, first_row), max(high_row, last_row)
             inverse = 1.0 / area
+            step_b, step_c = (cy - ay) * inverse, -(by - ay) * inverse
             for j in range(first_row, last_row + 1):
+                wb = ((first_column - ax) * (cy - ay) - (j - ay) * (cx - ax)) * inverse
+                wc = ((bx - ax) * (j - ay) - (by - ay) * (first_column - ax)) * inverse
                 for i in range(first_column, last_column + 1):
-                    wb = ((i - ax) * (cy - ay) - (j - ay) * (cx - ax)) * inverse
-                    wc = ((bx - ax) * (j - ay) - (by - ay) * (i - ax)) * inverse
-                    wa = 1.0 - wb - wc
-                    if wa >= 0.0 and wb >= 0.0 and wc >= 0.0:
-                        depth = np.float32(wa * depths[a] + wb * depths[b] + wc * depths[c])
-                        if depth < nearest[j, i]:
-                            nearest[j, i] = depth
-                            owner[j, i] = f
+                    if wb >= 0.0 and wc >= 0.0 and wb + wc <= 1.0:
+                        owner[j, i] = f
+                    wb += step_b
+                    wc += step_c
         covered = owner >= 0
         for j in range(max(low_row, 1), min(high_row + 1, size - 1)):
             for i in range(1, size - 1):

@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from typing import Self, TypeVar
+from typing import TypeVar
 
 import numba
 
@@ -31,7 +31,7 @@ class Pool:
         self._stopping = False
         self._executor = ThreadPoolExecutor(_processors(), thread_name_prefix="fast-estimation")
 
-    def __enter__(self) -> Self:
+    def __enter__(self) -> "Pool":
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -7,7 +7,8 @@ from typing import Final, Literal
 import numpy as np
 from jaxtyping import Float
 
-from shapewright.estimation.fast.branches import other_choices
+from shapewright.errors import EstimationError
+from shapewright.estimation.fast.branches import other_choices, other_poses
 from shapewright.estimation.fast.candidate import Candidate
 from shapewright.estimation.fast.fitted_model import COARSE, FINE, FittedModel
 from shapewright.estimation.fast.least_squares import Effort, fit
@@ -21,28 +22,35 @@ Phase = Literal["start", "fit", "polish"]
 
 INSTANCES: Final = 48
 """Random instances of one model that are scored; several models share twice as many, but each has at least a third."""
-STARTS, STARTS_OF_EACH = 12, 2
+STARTS, STARTS_OF_EACH = 28, 3
 """Candidates that least squares begin with: the best of all, and of each model."""
-PURSUED, OF_EACH_PURSUED = 5, 1
-"""Candidates that go on after the first fit: the best of all, and of each model."""
-BRANCHED: Final = 3
+SIFTED, SIFTED_OF_EACH = 10, 1
+"""Candidates that go on after a few rounds."""
+PURSUED, PURSUED_OF_EACH = 4, 1
+"""Candidates that go on after the first fit."""
+BRANCHED: Final = 2
 """Candidates whose options are changed."""
 POLISHED: Final = 2
 """Candidates that are polished."""
 
-_FIRST: Final = Effort(
-    rounds=6, points=400, steps=COARSE, neighbors=3, width=0.2, damping=1e-2, pull=1e-6, outline=400, outline_width=0.2
+_SIFT: Final = Effort(
+    rounds=2, points=250, steps=COARSE, neighbors=2, width=0.2, damping=1e-2, pull=1e-6, outline=250, outline_width=0.3
 )
-_GLANCE: Final = Effort(rounds=3, points=300, steps=COARSE, neighbors=3, width=0.05, outline=400, outline_width=0.1)
-_CLOSER: Final = Effort(rounds=8, points=800, steps=FINE, outline=800)
-_DENSE: Final = Effort(rounds=8, points=2000, steps=FINE, damping=1e-4, outline=1000, outline_width=0.05)
+_FIRST: Final = Effort(
+    rounds=5, points=300, steps=COARSE, neighbors=3, width=0.2, damping=1e-2, pull=1e-6, outline=300, outline_width=0.2
+)
+_GLANCE: Final = Effort(rounds=2, points=300, steps=COARSE, neighbors=3, width=0.05, outline=300)
+_CLOSER: Final = Effort(rounds=8, points=600, steps=COARSE, neighbors=4, outline=600)
+_DENSE: Final = Effort(rounds=8, points=1200, steps=FINE, neighbors=4, damping=1e-4, outline=1000, outline_width=0.05)
 _PURE: Final = Effort(rounds=6, points=2000, steps=FINE, damping=1e-4)
 """Surfaces alone: where the model can follow the query exactly, outlines only add the noise of pixels."""
 
 _BRANCHINGS: Final = 4
-_CHILDREN: Final = 3
+_CHILDREN: Final = 2
 _GAIN: Final = 1e-4
 _ROUNDS, _ROUND_GAIN = 15, 1e-3
+_WORTH_POLISHING: Final = 1.25
+"""Candidates whose z-buffer distance is larger than the best one's by this factor are not polished."""
 _EXACT: Final = 0.06
 """Z-buffer distance below which surfaces alone are tried, too."""
 
@@ -90,16 +98,18 @@ class Search:
         Raises:
             Cancelled: ``report`` raised it.
         """
-        self._message, self._fraction = "first orientations", 0.0
+        self._message, self._fraction, self._rng = "first orientations", 0.0, rng
         with Pool(self._ask) as pool:
             self._pool = pool
             candidates = self._begin(rng)
-            self._say(0.2, "first fits")
+            self._say(0.15, "first fits")
+            candidates = spread(self._fitted(candidates, _SIFT), SIFTED, SIFTED_OF_EACH)
             candidates = self._fitted(candidates, _FIRST)
-            self._say(0.45, "closer fits")
-            groups = [[one for one in candidates if one.model is model] for model in self.models]
-            candidates = self._fitted(_best_of(candidates, groups, PURSUED, OF_EACH_PURSUED), _CLOSER)
-            self._say(0.6, "options")
+            self._say(0.4, "closer fits")
+            candidates = self._fitted(spread(candidates, PURSUED, PURSUED_OF_EACH), _CLOSER)
+            self._say(0.5, "other poses")
+            candidates = self._turned(candidates)
+            self._say(0.55, "options")
             leaders = [self._branched(one, _CLOSER, outline_distance) for one in candidates[:BRANCHED]]
             self.kept += candidates[BRANCHED:]
             self._say(0.75, "dense fits")
@@ -131,10 +141,13 @@ class Search:
             ),
             tasks,
         )
-        candidates = spread(groups, STARTS, STARTS_OF_EACH)
         for group in groups:
             if group:
                 self._keep("start", outline_distance(self.target, group[0]))
+        everything = sorted((one for group in groups for one in group), key=lambda one: one.misfit)
+        if not everything:
+            raise EstimationError("no instance of the models has an area", where="models")
+        candidates = spread(everything, STARTS, STARTS_OF_EACH)
         self.finished.add("start")
         return candidates
 
@@ -158,14 +171,26 @@ class Search:
             ),
         )
 
+    def _turned(self, candidates: list[Candidate]) -> list[Candidate]:
+        """Try the poses that look like the best candidate's from afar."""
+        if self.known[self.models.index(candidates[0].model)].rotations is not None:
+            return candidates
+        turned = self._fitted(other_poses(candidates[0], self.target), _FIRST)
+        hopeful = [one for one in turned if one.zbuffer < 1.2 * candidates[0].zbuffer + 0.02]
+        closer = self._fitted(hopeful, _CLOSER)
+        self.kept += closer
+        return _sorted([*candidates, *closer])
+
     def _branched(
         self, candidate: Candidate, effort: Effort, measure: Callable[[Target, Candidate], Candidate]
     ) -> Candidate:
         """Change options for as long as another choice comes nearer; a change inherits all that it can."""
         candidate = measure(self.target, candidate)
         for _ in range(_BRANCHINGS):
-            glances = _sorted(self._pool.map(lambda one: self._fit(one, _GLANCE), list(other_choices(candidate))))
-            limit = 1.25 * candidate.zbuffer + 0.02
+            glances = _sorted(
+                self._pool.map(lambda one: self._fit(one, _GLANCE), list(other_choices(candidate, self._rng)))
+            )
+            limit = 1.1 * candidate.zbuffer + 0.02
             hopeful = [one for one in glances if one.zbuffer < limit][:_CHILDREN]
             children = _sorted(self._pool.map(lambda one: measure(self.target, self._fit(one, effort)), hopeful))
             if not children or children[0].zbuffer >= candidate.zbuffer - _GAIN:
@@ -181,7 +206,8 @@ class Search:
         if leader.zbuffer < _EXACT:
             pure = fine_distance(self.target, self._fit(leader, _PURE))
             candidates = _sorted([pure, fine_distance(self.target, leader), *candidates[1:]])
-        polished = self._pool.map(self._polished, candidates)
+        limit = _WORTH_POLISHING * candidates[0].zbuffer
+        polished = self._pool.map(self._polished, [one for one in candidates if one.zbuffer <= limit])
         self.kept += [*polished, *others]
         for one in polished:
             self._keep("polish", one)
@@ -221,13 +247,3 @@ class Search:
 
 def _sorted(candidates: Iterable[Candidate]) -> list[Candidate]:
     return sorted(candidates, key=lambda one: one.zbuffer)
-
-
-def _best_of(
-    candidates: Sequence[Candidate], groups: Sequence[Sequence[Candidate]], kept: int, of_each: int
-) -> list[Candidate]:
-    """Return the best of all and the best of each group, distinct, the best first."""
-    chosen = list(candidates[:kept])
-    for group in groups:
-        chosen += [one for one in group[:of_each] if all(one is not other for other in chosen)]
-    return chosen

@@ -5,6 +5,7 @@ No bank is needed: a few dozen instances, scored on few points by brute force, a
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 from jaxtyping import Float
@@ -20,12 +21,16 @@ from shapewright.estimation.fast.kernels import (
 )
 from shapewright.estimation.fast.target import Target, principal_axes
 
-POINTS = 160
+POINTS = 112
 """Samples of the query and of an instance while poses are scored."""
 ROUNDS = 12
 """Rounds of closest points."""
+_TURNS: Final = rotations_24()
 _TURNS_KEPT = 3
 """Orientations of an instance that go on to closest points."""
+_OF_ONE_TURN: Final = 2
+_ONE_TURN_TRACE: Final = 1.0 + 2.0 * float(np.cos(np.radians(40.0)))
+"""Trace of the rotation between two orientations that are taken for one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,13 +79,27 @@ def find_starts(
     return candidates[:kept]
 
 
-def spread(groups: Sequence[Sequence[Candidate]], kept: int, of_each: int) -> list[Candidate]:
-    """Merge the candidates of several models: the best of all, and the best few of each model."""
-    everything = sorted((one for group in groups for one in group), key=lambda one: one.misfit)
-    chosen = everything[:kept]
-    for group in groups:
-        chosen += [one for one in group[:of_each] if all(one is not other for other in chosen)]
+def spread(candidates: Sequence[Candidate], kept: int, of_each: int) -> list[Candidate]:
+    """Choose the best of all and the best few of each model, no more than a few of one model in one orientation.
+
+    Args:
+        candidates: the best first.
+        kept: how many to choose of all.
+        of_each: how many to choose of each model at least.
+    """
+    chosen: list[Candidate] = []
+    counts: dict[int, int] = {}
+    for one in candidates:
+        count = counts.get(id(one.model), 0)
+        if (len(chosen) < kept or count < of_each) and sum(_alike(one, other) for other in chosen) < _OF_ONE_TURN:
+            chosen.append(one)
+            counts[id(one.model)] = count + 1
     return chosen
+
+
+def _alike(first: Candidate, second: Candidate) -> bool:
+    """Tell whether two candidates are of one model in nearly one orientation."""
+    return first.model is second.model and float(np.sum(first.rotation * second.rotation)) > _ONE_TURN_TRACE
 
 
 def _surfaces(model: FittedModel, values: Float[np.ndarray, "B P"]) -> Float[np.ndarray, "B V 3"]:
@@ -110,7 +129,7 @@ def _score(
     if rotations is None:
         frames = (principal_axes(centered), principal_axes(normals), np.eye(3))
         pairs = zip(target.frames, frames, strict=True)
-        rotations = np.concatenate([to.T @ rotations_24() @ own for to, own in pairs])
+        rotations = np.concatenate([to.T @ _TURNS @ own for to, own in pairs])
     size = target.radius if known_scale is None else known_scale * radius
     scores = np.empty(len(rotations), dtype=np.float32)
     score_rotations(

@@ -386,7 +386,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/v1/collection-estimations": {
+    "/v1/estimations/{id}/residuals": {
         parameters: {
             query?: never;
             header?: never;
@@ -394,74 +394,13 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * List Collection Estimations
-         * @description List the estimations of many meshes, newest first.
+         * Get Estimation Residuals
+         * @description Where the query and the fitted mesh part, as vertex colors; 404 until there is a fitted mesh.
+         *
+         *     Yellow lies on the other surface; dark violet is four times the tolerance away from it, or more. Both meshes are in
+         *     the query's own coordinates.
          */
-        get: operations["list_collection_estimations"];
-        put?: never;
-        /**
-         * Create Collection Estimation
-         * @description Estimate many meshes as one job, whose parts any worker takes.
-         */
-        post: operations["create_collection_estimation"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/v1/collection-estimations/{id}": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Get Collection Estimation
-         * @description Look at an estimation of many meshes.
-         */
-        get: operations["get_collection_estimation"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/v1/collection-estimations/{id}/rows": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * List Estimated Meshes
-         * @description List what is found for each mesh so far, sorted by a parameter or a ratio.
-         */
-        get: operations["list_estimated_meshes"];
-        put?: never;
-        post?: never;
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
-    "/v1/collection-estimations/{id}/table": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        /**
-         * Get Estimated Table
-         * @description Download all rows as comma-separated values.
-         */
-        get: operations["get_estimated_table"];
+        get: operations["get_estimation_residuals"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1079,125 +1018,6 @@ export interface components {
             skipped: components["schemas"]["SkippedMeshOut"][] | null;
         };
         /**
-         * CollectionEstimationIn
-         * @description Meshes to rebuild, each with a model or with the best of a class's models.
-         */
-        CollectionEstimationIn: {
-            /**
-             * Collection Id
-             * @description A collection, indexed or not; leave it out to name meshes instead.
-             */
-            collection_id?: string | null;
-            /** Mesh Ids */
-            mesh_ids?: string[] | null;
-            /**
-             * Model Id
-             * @description A model; leave it out to name a class instead.
-             */
-            model_id?: string | null;
-            /**
-             * Class Name
-             * @description A class; for each mesh its models are all tried.
-             */
-            class_name?: string | null;
-            /**
-             * Units
-             * @description Unit of the meshes' coordinates: lengths come in it, and the scale of the fits is known.
-             */
-            units?: ("mm" | "cm" | "m" | "in") | null;
-            /**
-             * Up
-             * @description The axis of the meshes' files that points up.
-             */
-            up?: ("+x" | "-x" | "+y" | "-y" | "+z" | "-z") | null;
-            settings?: components["schemas"]["EstimationSettingsIn"];
-        };
-        /**
-         * CollectionEstimationOut
-         * @description An estimation of many meshes, asked for or done.
-         */
-        CollectionEstimationOut: {
-            /** Id */
-            id: string;
-            state: components["schemas"]["JobState"];
-            /**
-             * Collection Id
-             * @description The collection that was asked for; null if meshes were.
-             */
-            collection_id: string | null;
-            /** Mesh Count */
-            mesh_count: number;
-            /**
-             * Done Count
-             * @description Meshes that have a row; they keep it if the job is cancelled.
-             */
-            done_count: number;
-            /**
-             * Failed Count
-             * @description Those among them that could not be estimated.
-             */
-            failed_count: number;
-            /**
-             * Model Id
-             * @description The model that was asked for; null if a class was.
-             */
-            model_id: string | null;
-            /**
-             * Class Name
-             * @description The class that was asked for; null if a model was.
-             */
-            class_name: string | null;
-            /**
-             * Model Ids
-             * @description The models that are tried.
-             */
-            model_ids: string[];
-            /**
-             * Units
-             * @description Unit of the meshes' coordinates, if it was given.
-             */
-            units: string | null;
-            /**
-             * Up
-             * @description Axis of the meshes' files that points up, if it was given.
-             */
-            up: string | null;
-            /** Settings */
-            settings: {
-                [key: string]: unknown;
-            };
-            /**
-             * Rows Url
-             * @description What was found for each mesh, in any order.
-             */
-            rows_url: string;
-            /**
-             * Table Url
-             * @description The same as comma-separated values, a column for each parameter.
-             */
-            table_url: string;
-            /** Job Id */
-            job_id: string;
-            /**
-             * Created At
-             * Format: date-time
-             */
-            created_at: string;
-        };
-        /**
-         * CollectionEstimationPageOut
-         * @description A page of estimations of many meshes.
-         */
-        CollectionEstimationPageOut: {
-            /** Items */
-            items: components["schemas"]["CollectionEstimationOut"][];
-            /**
-             * Next Cursor
-             * @description Give it as `cursor` to read on; null on the last page.
-             */
-            next_cursor: string | null;
-        };
-        /**
          * CollectionIn
          * @description Meshes to index.
          */
@@ -1308,47 +1128,6 @@ export interface components {
             zbuffer_raw: number | null;
         };
         /**
-         * EstimatedMeshOut
-         * @description The row of a mesh: its answer, or why there is none.
-         */
-        EstimatedMeshOut: {
-            /**
-             * Position
-             * @description Number of the mesh in what was asked for, from 0.
-             */
-            position: number;
-            /** Mesh Id */
-            mesh_id: string;
-            /** File Name */
-            file_name: string;
-            /**
-             * Sorted By
-             * @description The value that the rows are sorted by; null comes last.
-             */
-            sorted_by: number | null;
-            answer: components["schemas"]["MeshAnswerOut"] | null;
-            /**
-             * Error
-             * @description Why there is no answer.
-             */
-            error: string | null;
-            /** Seconds */
-            seconds: number | null;
-        };
-        /**
-         * EstimatedMeshPageOut
-         * @description A page of rows, in the order that was asked for.
-         */
-        EstimatedMeshPageOut: {
-            /** Items */
-            items: components["schemas"]["EstimatedMeshOut"][];
-            /**
-             * Next Cursor
-             * @description Give it as `cursor` to read on; null on the last page.
-             */
-            next_cursor: string | null;
-        };
-        /**
          * EstimationIn
          * @description A mesh to rebuild with a model, or with the best of a class's models.
          */
@@ -1375,6 +1154,11 @@ export interface components {
              * @description The axis of the mesh's file that points up.
              */
             up?: ("+x" | "-x" | "+y" | "-y" | "+z" | "-z") | null;
+            /**
+             * Time Limit S
+             * @description Seconds of work after which the best answer until then is taken.
+             */
+            time_limit_s?: number | null;
             settings?: components["schemas"]["EstimationSettingsIn"];
         };
         /**
@@ -1412,6 +1196,11 @@ export interface components {
              * @description Axis of the mesh's file that points up, if it was given.
              */
             up: string | null;
+            /**
+             * Time Limit S
+             * @description Seconds of work that it may take, if that was limited.
+             */
+            time_limit_s: number | null;
             /** Settings */
             settings: {
                 [key: string]: unknown;
@@ -1422,6 +1211,11 @@ export interface components {
              * @description The fitted mesh as GLB, in the query's coordinates.
              */
             mesh_url: string | null;
+            /**
+             * Residuals Url
+             * @description Mesh and fit as GLB, colored by how far each part of them is from the other.
+             */
+            residuals_url: string | null;
             /** Job Id */
             job_id: string;
             /**
@@ -1504,6 +1298,8 @@ export interface components {
         /**
          * EstimationSettingsIn
          * @description Settings of an estimation; what is left out keeps the library's default (paper section 3.3).
+         *
+         *     Those of random instances, points, pictures and steps are the reference's.
          */
         EstimationSettingsIn: {
             /**
@@ -1549,9 +1345,9 @@ export interface components {
             seed?: number | null;
             /**
              * Estimator
-             * @description Which estimator works; `reference` is the paper, step by step.
+             * @description Which estimator works: `fast` (the default), or `reference`, the paper step by step.
              */
-            estimator?: "reference" | null;
+            estimator?: ("fast" | "reference") | null;
         };
         /**
          * FailedThresholdOut
@@ -1631,7 +1427,7 @@ export interface components {
          * @description What a job does.
          * @enum {string}
          */
-        JobKind: "train_classifier" | "describe_variations" | "classify" | "estimate" | "estimate_collection" | "estimate_meshes" | "render_thumbnail" | "index_collection" | "retrieve";
+        JobKind: "train_classifier" | "describe_variations" | "classify" | "estimate" | "render_thumbnail" | "index_collection" | "retrieve";
         /**
          * JobOut
          * @description A piece of long work, as its row says.
@@ -1727,37 +1523,6 @@ export interface components {
             offset: number;
             /** Factor */
             factor: number;
-        };
-        /**
-         * MeshAnswerOut
-         * @description What was found for a mesh.
-         */
-        MeshAnswerOut: {
-            /**
-             * Estimator
-             * @description Which estimator found it.
-             */
-            estimator: string;
-            /** @description The model that fits best. */
-            model: components["schemas"]["FoundModelOut"];
-            /**
-             * Layer
-             * @enum {integer}
-             */
-            layer: 1 | 2 | 3;
-            /** Complete */
-            complete: boolean;
-            /**
-             * Values
-             * @description x in the order of the model's parameters.
-             */
-            values: number[];
-            /** Parameters */
-            parameters: components["schemas"]["ParameterEstimateOut"][];
-            pose: components["schemas"]["PoseOut"];
-            distances: components["schemas"]["DistancesOut"];
-            /** Ratios */
-            ratios: components["schemas"]["RatioOut"][];
         };
         /**
          * MeshOut
@@ -3724,110 +3489,7 @@ export interface operations {
             };
         };
     };
-    list_collection_estimations: {
-        parameters: {
-            query?: {
-                /** @description Most items of a page. */
-                limit?: number;
-                /** @description `next_cursor` of the page before; none for the first page. */
-                cursor?: string | null;
-            };
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["CollectionEstimationPageOut"];
-                };
-            };
-            /** @description The request is not valid; `where` says the place. */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemOut"];
-                };
-            };
-        };
-    };
-    create_collection_estimation: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["CollectionEstimationIn"];
-            };
-        };
-        responses: {
-            /** @description Successful Response */
-            202: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["AcceptedOut"];
-                };
-            };
-            /** @description The body is too large. */
-            413: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemOut"];
-                };
-            };
-            /** @description The body is of a type that is not taken. */
-            415: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemOut"];
-                };
-            };
-            /** @description The request is not valid; `where` says the place. */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemOut"];
-                };
-            };
-            /** @description A store does not answer. */
-            503: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemOut"];
-                };
-            };
-            /** @description There is no space left; nothing was kept. */
-            507: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemOut"];
-                };
-            };
-        };
-    };
-    get_collection_estimation: {
+    get_estimation_residuals: {
         parameters: {
             query?: never;
             header?: never;
@@ -3838,108 +3500,21 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description Successful Response */
+            /** @description A scene with the nodes `fit` and `query`, colored. */
             200: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["CollectionEstimationOut"];
+                    "model/gltf-binary": string;
                 };
             };
-            /** @description There is no such thing. */
-            404: {
+            /** @description Not modified. */
+            304: {
                 headers: {
                     [name: string]: unknown;
                 };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemOut"];
-                };
-            };
-            /** @description The request is not valid; `where` says the place. */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemOut"];
-                };
-            };
-        };
-    };
-    list_estimated_meshes: {
-        parameters: {
-            query?: {
-                /** @description A parameter, a distance, or a ratio of two: `stem_length`, `zbuffer`, `stem_length/bowl_depth`. Without it rows come in the order of the meshes. */
-                sort?: string | null;
-                /** @description The largest first; rows without the value come last anyway. */
-                descending?: boolean;
-                /** @description Most items of a page. */
-                limit?: number;
-                /** @description `next_cursor` of the page before; none for the first page. */
-                cursor?: string | null;
-            };
-            header?: never;
-            path: {
-                id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description Successful Response */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["EstimatedMeshPageOut"];
-                };
-            };
-            /** @description There is no such thing. */
-            404: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemOut"];
-                };
-            };
-            /** @description The request is not valid; `where` says the place. */
-            422: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/problem+json": components["schemas"]["ProblemOut"];
-                };
-            };
-        };
-    };
-    get_estimated_table: {
-        parameters: {
-            query?: {
-                /** @description A parameter, a distance, or a ratio of two: `stem_length`, `zbuffer`, `stem_length/bowl_depth`. Without it rows come in the order of the meshes. */
-                sort?: string | null;
-                /** @description The largest first; rows without the value come last anyway. */
-                descending?: boolean;
-            };
-            header?: never;
-            path: {
-                id: string;
-            };
-            cookie?: never;
-        };
-        requestBody?: never;
-        responses: {
-            /** @description One line a mesh: its file, model, distances, and each parameter by name with the ends of its 90 % interval, its status and its unit. */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "text/csv": string;
-                };
+                content?: never;
             };
             /** @description There is no such thing. */
             404: {
