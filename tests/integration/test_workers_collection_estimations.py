@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from worker_support import QUICK, Site, brick, now
+from fake_estimation import estimate_by_extent
+from worker_support import Site, brick, now
 
 from models_store import catalog, claims
 from models_store.catalog import RankedMesh, RowOrder
@@ -23,16 +24,11 @@ from workers.settings import WorkerSettings
 from workers.stopping import StopNotice
 
 HEIGHTS = (1.8, 0.5, 1.2, 0.9, 1.5)
-COARSE = {
-    **QUICK,
-    "samples": 20,
-    "estimator": "reference",
-    "alignment": {"translation_step": 0.1, "rotation_step_rad": 0.2, "scale_step": 0.1},
-}
 
 
 @pytest.fixture
-def site(tmp_path: Path) -> Iterator[Site]:
+def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Site]:
+    monkeypatch.setattr("shapewright.estimation.estimate", estimate_by_extent)
     made = Site(tmp_path)
     yield made
     made.close()
@@ -56,7 +52,7 @@ def request(site: Site, heights: tuple[float, ...] = HEIGHTS) -> CollectionEstim
         meshes.append(row.id)
     model_id = site.add_model(brick())
     with site.database.writing() as session:
-        return catalog.request_collection_estimation(session, COARSE, mesh_ids=meshes, model_id=model_id, now=now())
+        return catalog.request_collection_estimation(session, {}, mesh_ids=meshes, model_id=model_id, now=now())
 
 
 def rows(site: Site, row: CollectionEstimationRow, *sort: str) -> list[RankedMesh]:
