@@ -284,6 +284,7 @@ class CollectionEstimationRow(Base):
     """Which parameter values rebuild each of many meshes; what is found is in :class:`EstimatedMeshRow`.
 
     Asked for with a class, ``model_ids`` are the models of the class then, and ``model_id`` is null.
+    ``time_limit_s`` is for each mesh.
     """
 
     __tablename__ = "collection_estimations"
@@ -298,6 +299,7 @@ class CollectionEstimationRow(Base):
     model_ids: Mapped[list[str]]
     units: Mapped[str | None] = mapped_column(String(2))
     up: Mapped[str | None] = mapped_column(String(2))
+    time_limit_s: Mapped[float | None] = mapped_column(Double)
     settings: Mapped[dict[str, Any]]
     created_at: Mapped[datetime]
     job: Mapped[JobRow] = relationship(lazy="joined", innerjoin=True)

@@ -2,15 +2,15 @@
 
 import time
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import structlog
 
 from models_store import catalog
 from models_store.errors import ArtifactError, ArtifactNotFoundError, StaleClaim
 from models_store.session import OUTAGES
-from shapewright.errors import Cancelled, ShapewrightError
-from shapewright.progress import Progress
+from shapewright.errors import Cancelled, EstimationError, ShapewrightError
+from shapewright.progress import LimitedProgress, Progress
 from workers.context import JobContext, utc_now
 from workers.finite import finite
 from workers.patience import patiently
@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 
 log = structlog.get_logger(__name__)
 
-UNEXPECTED = "internal worker error; see its log"
+MESHES_A_PART: Final = 4
+"""So few that a part that is lost costs a minute, and so many that the models are worth being compiled for them."""
+UNEXPECTED: Final = "internal worker error; see its log"
 
 
 class MeshEstimations:
@@ -82,10 +84,17 @@ class MeshEstimations:
         mesh = self._context.load_query(row.mesh_ids[position])
         query = Query(mesh, units=cast("Unit | None", row.units), up=cast("Axis | None", row.up))
         banks = partial(bank_of, self._context, settings)
+        compiled = self._compiled
+        began_s, limit_s = time.perf_counter(), row.time_limit_s
+        limit = LimitedProgress(progress, lambda: limit_s is not None and time.perf_counter() - began_s >= limit_s)
         try:
-            found: Estimation = estimate(query, self._compiled, settings, progress=progress, banks=banks)
-        except EstimationCancelled:
-            raise Cancelled from None
+            found: Estimation = estimate(query, compiled, settings, progress=limit, banks=banks)
+        except EstimationCancelled as cancelled:
+            if not limit.reached:
+                raise Cancelled from None
+            if cancelled.best is None:
+                raise EstimationError("the time was over before anything was found", where="time_limit_s") from None
+            found = cancelled.best
         return cast("dict[str, Any]", finite(answer_of(found)))
 
     @cached_property

@@ -37,6 +37,7 @@ def request_collection_estimation(
     class_name: str | None = None,
     units: str | None = None,
     up: str | None = None,
+    time_limit_s: float | None = None,
     now: datetime,
     max_attempts: int = 3,
 ) -> CollectionEstimationRow:
@@ -51,6 +52,7 @@ def request_collection_estimation(
         class_name: without a model, the class whose models (as they are now) are tried for each mesh.
         units: unit of the meshes' coordinates, as :class:`shapewright.estimation.Query` has it.
         up: axis of the meshes' files that points up.
+        time_limit_s: seconds after which a mesh has the best answer until then.
         now: the time, with a zone.
         max_attempts: of the job.
 
@@ -86,6 +88,7 @@ def request_collection_estimation(
         model_ids=model_ids,
         units=units,
         up=up,
+        time_limit_s=time_limit_s,
         settings=settings,
         created_at=now,
     )

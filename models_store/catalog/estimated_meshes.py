@@ -145,8 +145,10 @@ def all_estimated(session: Session, estimation_id: str, order: RowOrder) -> Iter
 
 
 def _rows(estimation_id: str, value: ColumnElement[float]) -> Select[EstimatedMeshRow, str, float]:
-    joined = select(EstimatedMeshRow, MeshRow.file_name, value.label("sorted_by")).join(MeshRow, MeshRow.id == EstimatedMeshRow.mesh_id)
-    return joined.where(EstimatedMeshRow.estimation_id == estimation_id)
+    query = select(EstimatedMeshRow, MeshRow.file_name, value.label("sorted_by"))
+    return query.join(MeshRow, MeshRow.id == EstimatedMeshRow.mesh_id).where(
+        EstimatedMeshRow.estimation_id == estimation_id
+    )
 
 
 def _after(value: ColumnElement[float], order: RowOrder, last: float | None, position: int) -> ColumnElement[bool]:

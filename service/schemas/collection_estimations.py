@@ -36,6 +36,9 @@ class CollectionEstimationIn(InBody):
         description="Unit of the meshes' coordinates: lengths come in it, and the scale of the fits is known.",
     )
     up: Axis | None = Field(default=None, description="The axis of the meshes' files that points up.")
+    time_limit_s: Annotated[float, Field(gt=0, le=86_400)] | None = Field(
+        default=None, description="Seconds of work for each mesh, after which the best answer until then is its row."
+    )
     settings: EstimationSettingsIn = Field(default_factory=EstimationSettingsIn)
 
 
@@ -53,6 +56,7 @@ class CollectionEstimationOut(OutBody):
     model_ids: list[str] = Field(description="The models that are tried.")
     units: str | None = Field(description="Unit of the meshes' coordinates, if it was given.")
     up: str | None = Field(description="Axis of the meshes' files that points up, if it was given.")
+    time_limit_s: float | None = Field(description="Seconds of work that each mesh may take, if that was limited.")
     settings: dict[str, Any]
     rows_url: str = Field(description="What was found for each mesh, in any order.")
     table_url: str = Field(description="The same as comma-separated values, a column for each parameter.")
@@ -74,6 +78,7 @@ class CollectionEstimationOut(OutBody):
             model_ids=row.model_ids,
             units=row.units,
             up=row.up,
+            time_limit_s=row.time_limit_s,
             settings=row.settings,
             rows_url=f"/v1/collection-estimations/{row.id}/rows",
             table_url=f"/v1/collection-estimations/{row.id}/table",

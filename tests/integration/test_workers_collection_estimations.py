@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from worker_support import QUICK, Site, brick, now
+from fake_estimation import estimate_by_extent
+from worker_support import Site, brick, now
 
 from models_store import catalog, claims
 from models_store.catalog import RankedMesh, RowOrder
@@ -21,19 +22,13 @@ from workers import mesh_estimations
 from workers.runner import Runner
 from workers.settings import WorkerSettings
 from workers.stopping import StopNotice
-from workers.tasks import estimate_collection
 
 HEIGHTS = (1.8, 0.5, 1.2, 0.9, 1.5)
-COARSE = {
-    **QUICK,
-    "samples": 20,
-    "estimator": "reference",
-    "alignment": {"translation_step": 0.1, "rotation_step_rad": 0.2, "scale_step": 0.1},
-}
 
 
 @pytest.fixture
-def site(tmp_path: Path) -> Iterator[Site]:
+def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Site]:
+    monkeypatch.setattr("shapewright.estimation.estimate", estimate_by_extent)
     made = Site(tmp_path)
     yield made
     made.close()
@@ -57,7 +52,7 @@ def request(site: Site, heights: tuple[float, ...] = HEIGHTS) -> CollectionEstim
         meshes.append(row.id)
     model_id = site.add_model(brick())
     with site.database.writing() as session:
-        return catalog.request_collection_estimation(session, COARSE, mesh_ids=meshes, model_id=model_id, now=now())
+        return catalog.request_collection_estimation(session, {}, mesh_ids=meshes, model_id=model_id, now=now())
 
 
 def rows(site: Site, row: CollectionEstimationRow, *sort: str) -> list[RankedMesh]:
@@ -72,7 +67,7 @@ def parts(site: Site, row: CollectionEstimationRow) -> list[tuple[str, JobState,
 
 
 def test_each_mesh_has_a_row_and_a_broken_one_its_reason(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(estimate_collection, "MESHES_A_PART", 2)
+    monkeypatch.setattr(mesh_estimations, "MESHES_A_PART", 2)
     row = request(site)
     site.artifacts.put(f"meshes/{row.mesh_ids[1]}/source.off", b"OFF\n3 1 0\n0 0 0\n")
     site.artifacts.delete(f"meshes/{row.mesh_ids[2]}/source.off")
@@ -101,7 +96,7 @@ def test_what_breaks_unexpectedly_is_a_row_too(site: Site, monkeypatch: pytest.M
 
 def test_another_worker_takes_parts_and_a_later_attempt_goes_on(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
     """The first attempt is lost after a part of it was done elsewhere."""
-    monkeypatch.setattr(estimate_collection, "MESHES_A_PART", 2)
+    monkeypatch.setattr(mesh_estimations, "MESHES_A_PART", 2)
     monkeypatch.setattr(claims, "QUIET", timedelta(0))
     row = request(site)
     with site.database.writing() as session:

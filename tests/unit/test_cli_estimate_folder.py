@@ -10,38 +10,30 @@ from typing import Any
 import numpy as np
 import pytest
 from command_line import shapewright, write_lamp_model
+from fake_estimation import estimate_by_extent
 from PIL import Image
 
 from cli.finished_rows import FinishedRows
 from shapewright.modeling import ProceduralModel, compile_model
 
-COARSE = {
-    "samples": 20,
-    "surface_points": 50,
-    "image_size": 16,
-    "subdivision_steps": 0,
-    "step_sizes": [0.5],
-    "alignment": {"translation_step": 0.1, "rotation_step_rad": 0.2, "scale_step": 0.1},
-    "estimator": "reference",
-}
 LENGTHS = {"a.off": 1.6, "sub/b.obj": 0.6, "c.ply": 1.1}
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    """Three lamps and a broken file, a model and coarse settings beside them."""
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Three lamps and a broken file, and a model beside them."""
+    monkeypatch.setattr("shapewright.estimation.many.estimate", estimate_by_extent)
     lamp = compile_model(ProceduralModel.load(write_lamp_model(tmp_path)))
     for name, length in LENGTHS.items():
         (tmp_path / "meshes" / name).parent.mkdir(parents=True, exist_ok=True)
         lamp.instance(np.array([length, 1.0])).save(tmp_path / "meshes" / name)
     (tmp_path / "meshes" / "broken.stl").write_bytes(b"solid nothing")
-    (tmp_path / "coarse.json").write_text(json.dumps(COARSE))
     return tmp_path
 
 
 def estimate(folder: Path, *arguments: object) -> Any:
     given = [str(argument) for argument in arguments]
-    options = ("-m", folder / "lamp.json", "--settings", folder / "coarse.json", "--jobs", "1", *given)
+    options = ("-m", folder / "lamp.json", "--jobs", "1", *given)
     return shapewright("estimate", folder / "meshes", *options)
 
 

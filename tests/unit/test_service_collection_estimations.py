@@ -57,7 +57,7 @@ def estimate_all(service: LiveService, accepted: dict[str, Any], lengths: list[f
 
 def test_many_meshes_are_one_job_and_one_table(service: LiveService) -> None:
     meshes, model = upload(service, 3), service.add_model("box")
-    body = {"mesh_ids": meshes, "class_name": "box", "units": "mm", "settings": {"seed": 3}}
+    body = {"mesh_ids": meshes, "class_name": "box", "units": "mm", "time_limit_s": 20, "settings": {"seed": 3}}
     response = service.client.post(URL, json=body)
     assert response.status_code == 202
     accepted = response.json()
@@ -65,6 +65,7 @@ def test_many_meshes_are_one_job_and_one_table(service: LiveService) -> None:
     waiting = service.client.get(accepted["url"]).json()
     assert (waiting["state"], waiting["mesh_count"], waiting["done_count"]) == ("queued", 3, 0)
     assert (waiting["model_ids"], waiting["class_name"], waiting["units"]) == ([model["id"]], "box", "mm")
+    assert waiting["time_limit_s"] == 20.0
 
     estimate_all(service, accepted, [1.5, None, 0.5])
     done = service.client.get(accepted["url"]).json()

@@ -1,19 +1,17 @@
 """Estimate the parameters of many meshes, together with workers that have nothing else to do."""
 
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from models_store.job_kinds import JobKind
 from shapewright.progress import CallbackProgress, PartialProgress
+from workers import mesh_estimations
 from workers.context import JobContext, Outcome
 from workers.mesh_estimations import MeshEstimations
 from workers.shared_parts import SharedParts
 
 if TYPE_CHECKING:
     from sqlalchemy.orm import Session
-
-MESHES_A_PART: Final = 4
-"""So few that a part that is lost costs a minute, and so many that the models are worth being compiled for them."""
 
 
 def estimate_collection(context: JobContext) -> Outcome:
@@ -22,7 +20,8 @@ def estimate_collection(context: JobContext) -> Outcome:
     count = len(work.row.mesh_ids)
     context.progress.report(0.0, f"0 of {count} meshes")
     positions = work.missing(range(count))
-    groups = [positions[start : start + MESHES_A_PART] for start in range(0, len(positions), MESHES_A_PART)]
+    size = mesh_estimations.MESHES_A_PART
+    groups = [positions[start : start + size] for start in range(0, len(positions), size)]
     identifier = context.claim.payload["collection_estimation_id"]
     payloads = [{"collection_estimation_id": identifier, "positions": group} for group in groups]
 

@@ -26,6 +26,7 @@ def upgrade() -> None:
         sa.Column("model_ids", sa.JSON(none_as_null=True), nullable=False),
         sa.Column("units", sa.String(length=2), nullable=True),
         sa.Column("up", sa.String(length=2), nullable=True),
+        sa.Column("time_limit_s", sa.Double(), nullable=True),
         sa.Column("settings", sa.JSON(none_as_null=True), nullable=False),
         sa.Column("created_at", sa.DateTime(timezone=True), nullable=False),
         sa.ForeignKeyConstraint(

@@ -1133,6 +1133,11 @@ export interface components {
              * @description The axis of the meshes' files that points up.
              */
             up?: ("+x" | "-x" | "+y" | "-y" | "+z" | "-z") | null;
+            /**
+             * Time Limit S
+             * @description Seconds of work for each mesh, after which the best answer until then is its row.
+             */
+            time_limit_s?: number | null;
             settings?: components["schemas"]["EstimationSettingsIn"];
         };
         /**
@@ -1185,6 +1190,11 @@ export interface components {
              * @description Axis of the meshes' files that points up, if it was given.
              */
             up: string | null;
+            /**
+             * Time Limit S
+             * @description Seconds of work that each mesh may take, if that was limited.
+             */
+            time_limit_s: number | null;
             /** Settings */
             settings: {
                 [key: string]: unknown;
