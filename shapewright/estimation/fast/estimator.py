@@ -182,7 +182,7 @@ class _Work:
         return Candidate(model, estimation.values, pose.rotation, pose.translation, pose.scale)
 
     def _alternatives(self, number: int, answer: Estimation) -> tuple[Alternative, ...]:
-        limit = 1.2 * answer.distances.zbuffer + 0.03
+        limit = 1.2 * self._best_of_models()[0][1].zbuffer + 0.03  # the last fit may have given depth up for surface
         near = sorted((one for one in self.search.kept if one.zbuffer < limit), key=lambda one: one.zbuffer)[:16]
         best = Contender(
             answer.model,
