@@ -12,7 +12,7 @@ import os
 import sys
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Final
@@ -111,12 +111,25 @@ def _compiled(name: str) -> CompiledModel:
 
 
 def tasks(names: list[str], queries: int) -> Iterator[tuple[int, Task]]:
-    """Yield the queries of every model; kinds and scales alternate, so that all models together have each as often."""
-    for i, name in enumerate(names):
-        model = load_shipped(name)
-        for j in range(queries):
-            known = (i + j // 2) % 2 == 0 and model.unit_m is not None
-            yield i * queries + j, Task(name, i * queries + j, KINDS[(i + j) % len(KINDS)], known)
+    """Yield the first query of every model, then the second; kinds and scales alternate."""
+    for j in range(queries):
+        for i, name in enumerate(names):
+            known = (i + j // 2) % 2 == 0 and load_shipped(name).unit_m is not None
+            number = j * len(names) + i
+            yield number, Task(name, number, KINDS[(i + j) % len(KINDS)], known)
+
+
+def read_scores(path: Path | None, waiting: dict[int, Task]) -> dict[int, tuple[Task, list[float]]]:
+    """Return what an earlier run has written of the same queries."""
+    if path is None or not path.exists():
+        return {}
+    rows = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+    tasks_by_row = ((row, waiting.get(row["number"])) for row in rows)
+    return {
+        row["number"]: (task, row["scores"])
+        for row, task in tasks_by_row
+        if task is not None and asdict(task) == row["task"]
+    }
 
 
 def shrunken(names: list[str], by_query: dict[int, tuple[Task, list[float]]]) -> tuple[float, dict[str, float]]:
@@ -159,17 +172,23 @@ def main() -> None:
     parser.add_argument("--queries", type=int, default=4, help="of each model")
     parser.add_argument("--models", nargs="+", default=None, help="names; all that ship if left out")
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--scores", type=Path, default=None, help="file of all scores, with which a later run goes on")
     parser.add_argument("-o", "--output", type=Path, default=None, help="file to write")
     options = parser.parse_args()
     names = sorted(options.models or list_shipped())
     waiting = dict(tasks(names, options.queries))
-    by_query: dict[int, tuple[Task, list[float]]] = {}
+    by_query = read_scores(options.scores, waiting)
+    left = [(number, task) for number, task in waiting.items() if number not in by_query]
     if options.jobs == 1:
-        outcomes = ((number, scores(task)) for number, task in waiting.items())
+        outcomes = ((number, scores(task)) for number, task in left)
     else:
-        outcomes = in_processes(iter(waiting.items()), scores, jobs=options.jobs, begin=_nothing, beat=_nothing)
+        outcomes = in_processes(iter(left), scores, jobs=options.jobs, begin=_nothing, beat=_nothing)
     for number, found in outcomes:
-        by_query[number] = (waiting[number], found)
+        task = waiting[number]
+        by_query[number] = (task, found)
+        if options.scores is not None:
+            with options.scores.open("a", encoding="utf-8") as file:
+                file.write(json.dumps({"number": number, "task": asdict(task), "scores": found}) + "\n")
         print(f"{len(by_query)} of {len(waiting)}", end="\r", file=sys.stderr)
     default, factors = shrunken(names, by_query)
     if options.output is not None:

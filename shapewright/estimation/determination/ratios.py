@@ -1,6 +1,7 @@
 """Ratios of lengths, which the query determines even where the scale of the pose trades against all lengths."""
 
 from collections.abc import Sequence
+from typing import Final
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -9,6 +10,9 @@ from shapewright.estimation.determination.information import Information
 from shapewright.estimation.determination.statuses import is_determined
 from shapewright.estimation.generator import ParameterInfo
 from shapewright.estimation.result import Ratio
+
+WIDEST_RATIO: Final = 0.05
+"""Half width of a ratio's interval, as a share of the ratio, above which it is not offered."""
 
 
 def find_ratios(
@@ -39,6 +43,7 @@ def find_ratios(
     of_ratio = np.maximum(variances[:, None] + variances[None, :] - 2.0 * covariance, 1e-300)
     range_of_ratio = (relative[:, None] + relative[None, :]) / 2.0
     determined = is_determined((range_of_ratio / np.sqrt(of_ratio)).reshape(-1), deviation).reshape(of_ratio.shape)
+    determined &= deviation * np.sqrt(of_ratio) <= WIDEST_RATIO
     np.fill_diagonal(determined, val=False)
     spread = np.array(
         [np.median(row[known]) if known.any() else np.inf for row, known in zip(of_ratio, determined, strict=True)]

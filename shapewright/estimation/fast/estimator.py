@@ -206,7 +206,7 @@ class _Work:
         """List what fits about as well; only what is listed is measured by every distance."""
         symmetry = self._model(number).model.symmetry
         best = Contender(answer.model, answer.values, answer.parameters, answer.pose, answer.distances, symmetry)
-        limit = 1.2 * answer.distances.zbuffer + 0.03
+        limit = 1.2 * self._best_of_models()[0][1].zbuffer + 0.03  # the last fit may have given depth up for surface
         near = [one for one in self.search.kept if one.zbuffer < limit]
         listed = list_alternatives(best, [self._contender(one) for one in near])
         by_values = {id(one.values): one for one in near}

@@ -17,6 +17,8 @@ from shapewright.estimation.fast.least_squares import Effort, fit
 from shapewright.estimation.fast.measure import fine_distance
 from shapewright.estimation.fast.target import Target
 
+EXACT: Final = 2e-4
+"""Systematic residual, in half extents, below which a model follows a query as exactly as triangles allow."""
 FOLLOWED: Final = 0.004
 """Systematic residual, in half extents, below which a model follows a query."""
 SCATTERED: Final = 0.45
@@ -39,8 +41,8 @@ def follow_surface(
         keeps_rotation: whether its rotation stays.
 
     Returns:
-        The new fit, with its z-buffer distance, if that is no larger or if what is left of its residuals is noise; else
-        the answer as it was.
+        The new fit, with its z-buffer distance, if that is no larger, or if no residual is left but noise; else the
+        answer as it was.
     """
     found = replace(candidate, zbuffer=np.inf)
     for _ in range(_FITS):
@@ -49,5 +51,5 @@ def follow_surface(
     if found.zbuffer <= candidate.zbuffer:
         return found
     left = candidate_deviation(target, found)
-    is_noise = left is not None and left.systematic < min(FOLLOWED, SCATTERED * left.mean)
-    return found if is_noise else candidate
+    follows = left is not None and left.systematic < max(EXACT, min(FOLLOWED, SCATTERED * left.mean))
+    return found if follows else candidate
