@@ -18,9 +18,8 @@ from cli.child_process import die_with_parent
 from cli.console import print_json, shown_progress
 from cli.finished_rows import FinishedRows
 from cli.table_files import check_ending, save_table
-from cli.time_limit import Deadline
 from shapewright.errors import Cancelled
-from shapewright.progress import CallbackProgress, Progress
+from shapewright.progress import CallbackProgress, LimitedProgress, Progress
 
 if TYPE_CHECKING:
     from multiprocessing.synchronize import Event
@@ -188,7 +187,8 @@ def _stoppable(stop: "Event", time_limit_s: float | None) -> Progress:
             raise Cancelled
 
     progress = CallbackProgress(look)
-    return progress if time_limit_s is None else Deadline(progress, time.monotonic() + time_limit_s)
+    started_s = time.monotonic()
+    return LimitedProgress(progress, lambda: time_limit_s is not None and time.monotonic() - started_s >= time_limit_s)
 
 
 @contextmanager
