@@ -17,7 +17,7 @@ EXPLANATIONS = {
     "determined": "the mesh says what it is",
     "determined_up_to_scale": "certain in proportion to other lengths; with --units the lengths themselves are",
     "not_determined": "other values would fit about as well",
-    "at_range_end": "the mesh asks for more than the model allows",
+    "at_range_end": "as far as the model allows; the mesh may ask for more",
 }
 THRESHOLDS = {"surface": "surface distance", "zbuffer": "z-buffer distance"}
 MOST_RATIOS = 8
