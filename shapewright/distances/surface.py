@@ -50,7 +50,7 @@ def uniform_points(mesh: TriangleMesh, count: int, *, rng: np.random.Generator) 
     if not sums[-1] > 0:
         raise MeshError("the surface has no area", where="faces")
     chosen = np.searchsorted(sums, rng.random(count) * sums[-1], side="right")
-    corners = mesh.triangles[np.minimum(chosen, len(sums) - 1)]
+    corners = mesh.vertices[mesh.faces[np.minimum(chosen, len(sums) - 1)]]
     root, part = np.sqrt(rng.random(count)), rng.random(count)
     weights = np.stack([1.0 - root, root * (1.0 - part), root * part], axis=1)
     return np.asarray(np.einsum("nk,nkd->nd", weights, corners))

@@ -1,14 +1,15 @@
 """Where a fit and its query part: what the model cannot follow, and what it invents."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from shapewright.distances.even_places import even_places
 from shapewright.errors import EstimationError
+from shapewright.estimation.dust import without_dust
 from shapewright.mesh import TriangleMesh
 
 TOLERANCE = 0.04
@@ -16,6 +17,8 @@ TOLERANCE = 0.04
 threshold of the surface distance."""
 SAMPLES = 6000
 """Points on each surface that shares of area, means and percentiles are taken from."""
+_PIECE: Final = 10_000
+"""Points whose distances are searched for at once."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +92,7 @@ def measure_residuals(
     region_names: Sequence[str] = (),
     regions: Int[np.ndarray, " Vm"] | None = None,
     tolerance: float = TOLERANCE,
+    checkpoint: Callable[[], None] | None = None,
 ) -> Residuals:
     """Measure how far the surfaces of a query and its fit are from each other.
 
@@ -98,6 +102,8 @@ def measure_residuals(
         region_names: names of the parts of the model.
         regions: the part of each vertex of the fit, as an index into the names.
         tolerance: in normalized units.
+        checkpoint: called between steps, of which the longest takes about a second for two million triangles; may
+            raise to stop.
 
     Raises:
         EstimationError: the tolerance is not positive, or the regions do not fit the vertices or names.
@@ -111,13 +117,23 @@ def measure_residuals(
         raise EstimationError(f"expected {len(fit.vertices)} regions, got {len(regions)}", where="regions")
     if regions is not None and (regions.min() < 0 or regions.max() >= len(region_names)):
         raise EstimationError(f"expected regions from 0 to {len(region_names) - 1}", where="regions")
-    normal = query.normalized()
-    posed = fit.transformed(np.eye(3), normal.translation, normal.scale)
-    to_query, to_fit = TriangleDistance(normal.mesh), TriangleDistance(posed)
-    query_points, _ = even_points(normal.mesh, SAMPLES)
+
+    def distances(to: TriangleDistance, points: Float[np.ndarray, "N 3"]) -> Float[np.ndarray, " N"]:
+        found = np.empty(len(points))
+        for first in range(0, len(points), _PIECE):
+            if checkpoint is not None:
+                checkpoint()
+            found[first : first + _PIECE] = to(points[first : first + _PIECE])
+        return found
+
+    normal = without_dust(query).normalized()
+    asked, posed = (mesh.transformed(np.eye(3), normal.translation, normal.scale) for mesh in (query, fit))
+    query_points, _ = even_points(asked, SAMPLES)
     fit_points, faces = even_points(posed, SAMPLES)
-    of_query, of_fit = to_fit(query_points), to_query(fit_points)
-    at_fit = to_query(posed.vertices)
+    to_fit = TriangleDistance(posed)
+    of_query, query_to_fit = distances(to_fit, query_points), distances(to_fit, asked.vertices)
+    to_query = TriangleDistance(asked)
+    of_fit, at_fit = distances(to_query, fit_points), distances(to_query, posed.vertices)
     by_part: tuple[PartResidual, ...] = ()
     if regions is not None:
         of_face = regions[posed.faces[:, 0]]
@@ -128,7 +144,7 @@ def measure_residuals(
             if len(own := of_fit[of_face[faces] == number]) or len(own := at_fit[regions == number])
         )
     return Residuals(
-        query_to_fit=to_fit(normal.mesh.vertices),
+        query_to_fit=query_to_fit,
         fit_to_query=at_fit,
         mean=float((of_query.mean() + of_fit.mean()) / 2),
         followed_share=float((of_query <= tolerance).mean()),
@@ -146,7 +162,7 @@ def even_points(mesh: TriangleMesh, count: int) -> tuple[Float[np.ndarray, "N 3"
     """
     mesh.centroid  # noqa: B018 - refuses a surface without area
     faces, weights = even_places(mesh.face_areas, count)
-    return np.asarray(np.einsum("nk,nkd->nd", weights, mesh.triangles[faces])), faces
+    return np.asarray(np.einsum("nk,nkd->nd", weights, mesh.vertices[mesh.faces[faces]])), faces
 
 
 def _part(name: str, share_of_area: float, distances: Float[np.ndarray, " N"], tolerance: float) -> PartResidual:

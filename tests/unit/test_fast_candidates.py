@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 from chair_model import armchair
-from fast_support import candidate_at, lever, random_pose, rigid, signs
+from fast_support import angle_deg, candidate_at, lever, placed, random_pose, rigid, signs, target_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from shapewright.estimation.fast.branches import other_choices
+from shapewright.estimation.fast.branches import DRAWS, other_choices, other_poses
 from shapewright.estimation.fast.fitted_model import COARSE, FINE, FittedModel
-from shapewright.modeling import compile_model
+from shapewright.modeling import Recorder, compile_model
 
 CENTER = np.array([0.2, -0.1, 0.3])
 
@@ -101,9 +101,7 @@ def test_turns_and_growth_leave_the_center_in_place(chair):
 def test_a_step_settles_the_values_and_forgets_what_was_measured(chair):
     from dataclasses import replace
 
-    candidate = replace(
-        candidate_at(chair, chair.compiled.base_values(), random_pose(0)), misfit=0.1, zbuffer=0.2
-    )
+    candidate = replace(candidate_at(chair, chair.compiled.base_values(), random_pose(0)), misfit=0.1, zbuffer=0.2)
     columns = chair.free_columns(candidate.values)[0]
     step = np.zeros(len(columns) + 7)
     step[: len(columns)] = (-0.2, 5.0, 5.0)
@@ -125,23 +123,49 @@ def test_placed_points_are_those_of_the_pose(chair):
 def test_every_other_choice_is_offered_once_and_the_rest_is_inherited(chair):
     values = chair.settle(chair.compiled.values_from_mapping({"back": 2, "armrests": 0, "leg_length": 1.4}))
     candidate = candidate_at(chair, values, random_pose(1, 1.5))
-    found = list(other_choices(candidate))
-    assert sorted(tuple(one.values[:2]) for one in found) == [(1.0, 0.0), (2.0, 1.0), (3.0, 0.0)]
+    found = list(other_choices(candidate, np.random.default_rng(0)))
+    once = [(1.0, 0.0), (2.0, 1.0), (3.0, 0.0)]  # and armrests, whose height is new, from random heights, too
+    assert sorted(tuple(one.values[:2]) for one in found) == sorted([*once, *[(2.0, 1.0)] * DRAWS])
     for one in found:
         np.testing.assert_array_equal(one.values[[2, 4]], values[[2, 4]])
         assert one.scale == candidate.scale
         assert one.zbuffer == np.inf
     with_arms = next(one for one in found if one.values[1] == 1.0)
-    assert with_arms.values[3] == 1.0  # what became active begins at its base value
+    assert with_arms.values[3] == 1.0  # what became active begins at its base value first
+    assert len({one.values[3] for one in found if one.values[1] == 1.0}) == 1 + DRAWS
 
 
 def test_a_model_without_options_has_no_other_choices():
-    model = FittedModel(rigid())
-    assert list(other_choices(candidate_at(model, np.zeros(0), random_pose(0)))) == []
+    candidate = candidate_at(FittedModel(rigid()), np.zeros(0), random_pose(0))
+    assert list(other_choices(candidate, np.random.default_rng(0))) == []
 
 
 def test_models_of_options_alone_have_nothing_free():
     model = FittedModel(signs())
     candidate = candidate_at(model, model.compiled.base_values(), random_pose(0))
     assert len(model.free_columns(candidate.values)[0]) == 0
-    assert sorted(tuple(one.values) for one in other_choices(candidate)) == [(1.0, 0.0), (2.0, 1.0), (3.0, 1.0)]
+    found = other_choices(candidate, np.random.default_rng(0))
+    assert sorted(tuple(one.values) for one in found) == [
+        (1.0, 0.0),
+        (2.0, 1.0),
+        (3.0, 1.0),
+    ]
+
+
+# ---------------------------------------------------------------------- poses
+
+
+def test_half_turns_leave_the_center_of_the_query_where_it_is_and_symmetry_prunes_them(chair):
+    candidate = candidate_at(chair, chair.compiled.base_values(), random_pose(1, 1.5, 0.3))
+    target = target_of(placed(chair.compiled, candidate.values, candidate.pose))
+    at_center = candidate.pose.inverse().apply(target.center[None])
+    found = list(other_poses(candidate, target))
+    assert len(found) == 3  # a mirror is no rotation
+    for one in found:
+        assert angle_deg(one.rotation, candidate.rotation) == pytest.approx(180.0)
+        np.testing.assert_allclose(one.placed(at_center)[0], target.center, atol=1e-9)
+    recorder = Recorder("bar", "bar")
+    recorder.box(1.0, 2.0, 3.0)
+    recorder.symmetry(axis="z", order=2)
+    bar = FittedModel(compile_model(recorder.build()))
+    assert len(list(other_poses(candidate_at(bar, np.zeros(0), random_pose(1)), target))) == 2

@@ -108,21 +108,23 @@ def test_a_score_is_the_mean_distance_both_ways(lopsided):
     assert scores[0] == pytest.approx(distances.min(axis=0).mean() + distances.min(axis=1).mean(), rel=1e-4)
 
 
+@pytest.mark.parametrize("keeps_rotation", [False, True])
 @pytest.mark.parametrize("keeps_scale", [False, True])
-def test_closest_points_recover_a_similarity(lopsided, keeps_scale):
+def test_closest_points_recover_a_similarity(lopsided, keeps_scale, keeps_rotation):
     true = Rotation.from_rotvec([0.5, -1.0, 2.0]).as_matrix()
     scale, translation = 1.7, np.array([3.0, -2.0, 0.5])
     query = scale * lopsided @ true.T + translation
     rotation, shift, found_scale, mean = kernels.align_by_closest_points(
         query,
         lopsided,
-        np.ascontiguousarray(Rotation.from_rotvec([0.05, 0.04, -0.06]).as_matrix() @ true),
+        true if keeps_rotation else np.ascontiguousarray(Rotation.from_rotvec([0.05, 0.04, -0.06]).as_matrix() @ true),
         translation + 0.1,
         scale if keeps_scale else 1.6,
         60,
         keeps_scale,
+        keeps_rotation,
     )
-    np.testing.assert_allclose(rotation, true, atol=1e-6)
+    np.testing.assert_allclose(rotation, true, atol=0.0 if keeps_rotation else 1e-6)
     np.testing.assert_allclose(shift, translation, atol=1e-5)
     assert found_scale == scale if keeps_scale else found_scale == pytest.approx(scale, rel=1e-6)
     assert mean < 1e-6
@@ -132,7 +134,9 @@ def test_closest_points_of_flat_things_are_aligned_by_a_proper_rotation():
     rng = np.random.default_rng(0)
     flat = np.column_stack([rng.random((50, 2)) * (2.0, 1.0), np.zeros(50)])
     mirrored = flat * (-1.0, 1.0, 1.0)
-    rotation, _, scale, _ = kernels.align_by_closest_points(flat, mirrored, np.eye(3), np.zeros(3), 1.0, 10, False)
+    rotation, _, scale, _ = kernels.align_by_closest_points(
+        flat, mirrored, np.eye(3), np.zeros(3), 1.0, 10, False, False
+    )
     assert np.linalg.det(rotation) == pytest.approx(1.0)
     assert scale > 0
 
@@ -140,7 +144,7 @@ def test_closest_points_of_flat_things_are_aligned_by_a_proper_rotation():
 def test_a_single_point_is_left_where_it_is():
     point = np.zeros((5, 3))
     rotation, shift, scale, mean = kernels.align_by_closest_points(
-        np.ones((4, 3)), point, np.eye(3), np.zeros(3), 2.0, 5, False
+        np.ones((4, 3)), point, np.eye(3), np.zeros(3), 2.0, 5, False, False
     )
     np.testing.assert_array_equal(rotation, np.eye(3))
     np.testing.assert_array_equal(shift, np.zeros(3))

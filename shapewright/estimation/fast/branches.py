@@ -36,7 +36,8 @@ def other_choices(candidate: Candidate, rng: np.random.Generator) -> Iterator[Ca
             fresh = space.active(changed.values[None])[0] & ~active
             fresh[column] = False
             if fresh.any():
-                for drawn in model.compiled.random_values(rng, DRAWS):
+                fixed = {model.compiled.model.parameters[column].name: value}
+                for drawn in model.compiled.random_values(rng, DRAWS, fixed):
                     yield changed.with_values(np.where(fresh, drawn, changed.values))
 
 

@@ -1,6 +1,6 @@
 """The fast estimator: the same layers, distances and verdict as the reference, and a better search (ours)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -13,6 +13,7 @@ from shapewright.estimation.comparison import Comparison
 from shapewright.estimation.determination.factors import IntervalFactors
 from shapewright.estimation.fast.candidate import Candidate
 from shapewright.estimation.fast.fitted_model import FittedModel
+from shapewright.estimation.fast.following import follow_surface
 from shapewright.estimation.fast.judging import determine_fit
 from shapewright.estimation.fast.measure import fine_distance
 from shapewright.estimation.fast.search import Known, Phase, Search
@@ -58,12 +59,12 @@ class FastEstimator:
         work: _Work | None = None
         try:
             steady.report(0.0, "preparing the query")
-            work = _Work(query, compiled, settings)
+            work = _Work(query, compiled, settings, steady.repeat)
             steady.report(0.02, "first orientations")
             work.search.report = lambda fraction, message: steady.report(_SEARCHING * fraction, message)
             work.search.run(np.random.default_rng(settings.seed))
             steady.report(_SEARCHING, "judging the fit")
-            answer = work.judged()
+            answer = work.judged(steady.repeat)
             steady.report(1.0, "estimated")
             return answer
         except Cancelled as cancelled:
@@ -73,13 +74,20 @@ class FastEstimator:
 class _Work:
     """One query: its preparation, its search, and the answer that can be made of it at any moment."""
 
-    def __init__(self, query: Query, compiled: Sequence[CompiledModel], settings: EstimationSettings) -> None:
-        self._prepared = PreparedQuery(query, settings)
+    def __init__(
+        self,
+        query: Query,
+        compiled: Sequence[CompiledModel],
+        settings: EstimationSettings,
+        checkpoint: Callable[[], None],
+    ) -> None:
+        self._prepared = PreparedQuery(query, settings, checkpoint)
         self._comparisons = [Comparison(self._prepared, model, settings) for model in compiled]
         target = Target(self._prepared.mesh, self._prepared.zbuffer, np.random.default_rng(settings.seed))
         known = [_known(comparison) for comparison in self._comparisons]
         models = [FittedModel(model) for model in compiled]
         self.search = Search(target, models, known, lambda fraction, message: None)
+        self._followed: dict[int, Candidate] = {}
         self.search.best["start", 0] = self._first_guess()
 
     def _first_guess(self) -> Candidate:
@@ -105,7 +113,8 @@ class _Work:
             scale_known=self._comparisons[number].known_scale is not None,
             factors=IntervalFactors.shipped(),
         )
-        tried = [ModelTried(self._model(other).model, self._distances(candidate)) for other, candidate in best]
+        tried = [ModelTried(self._model(number).model, estimation.distances)]
+        tried += [ModelTried(self._model(other).model, self._distances(candidate)) for other, candidate in best[1:]]
         unseen = set(range(len(self._comparisons))) - {other for other, _ in best}
         tried += [ModelTried(self._model(other).model) for other in sorted(unseen)]
         estimation = replace(estimation, tried=tuple(tried), complete=complete and estimation.complete)
@@ -124,8 +133,14 @@ class _Work:
             combinations=determination.combinations,
         )
 
-    def judged(self) -> Estimation:
-        """Answer with everything: where the surfaces part, and what else would fit."""
+    def judged(self, checkpoint: Callable[[], None]) -> Estimation:
+        """Answer with everything: the last fit, where the surfaces part, and what else would fit.
+
+        Args:
+            checkpoint: called between steps; may raise to stop.
+        """
+        self._follow()
+        checkpoint()
         answer = self.answer(complete=True)
         assert answer is not None
         number = next(k for k, comparison in enumerate(self._comparisons) if comparison.generator.model is answer.model)
@@ -136,6 +151,7 @@ class _Work:
             answer.mesh,
             region_names=regions.names,
             regions=regions.of_instance(model, answer.values),
+            checkpoint=checkpoint,
         )
         assert answer.verdict is not None
         return replace(
@@ -145,6 +161,13 @@ class _Work:
         )
 
     # ------------------------------------------------------------------ parts of the answer
+
+    def _follow(self) -> None:
+        number, best = self._best_of_models()[0]
+        known = self.search.known[number]
+        self._followed[number] = follow_surface(
+            self.search.target, best, keeps_scale=known.scale is not None, keeps_rotation=known.keeps_rotation
+        )
 
     def _best_of_models(self) -> list[tuple[int, Candidate]]:
         """Return the number and the best candidate of each model that has one, by the distance of the fine surface."""
@@ -157,7 +180,7 @@ class _Work:
         return sorted(found.items(), key=lambda item: item[1].zbuffer)
 
     def _record(self, number: int) -> Record:
-        """Return the stages of one model; a later stage is at least as good as the ones before it."""
+        """Return the stages of one model; a later one is no worse than those before it, by depth or by surface."""
         record = Record("fast", self._comparisons[number], FAST_STAGES)
         best: Candidate | None = None
         for stage in FAST_STAGES:
@@ -166,6 +189,8 @@ class _Work:
                 candidate = fine_distance(self.search.target, candidate)
                 if best is None or candidate.zbuffer < best.zbuffer:
                     best = candidate
+            if best is not None and stage == FAST_STAGES[-1]:
+                best = self._followed.get(number, best)
             if best is not None and (candidate is not None or stage in self.search.finished):
                 record.put(stage, best.values, best.pose)
             if stage in self.search.finished:

@@ -110,7 +110,7 @@ def score_rotations(query, model, rotations, scores):
 
 @njit(cache=True, nogil=True)
 @no_type_check
-def align_by_closest_points(query, model, rotation, translation, scale, rounds, keeps_scale):
+def align_by_closest_points(query, model, rotation, translation, scale, rounds, keeps_scale, keeps_rotation):
     """Refine a similarity by closest points, both ways, weighted against far pairs.
 
     Args:
@@ -118,7 +118,7 @@ def align_by_closest_points(query, model, rotation, translation, scale, rounds, 
         model: (M, 3) float64.
         rotation, translation, scale: where to begin.
         rounds: at most.
-        keeps_scale: whether the scale stays as it is.
+        keeps_scale, keeps_rotation: whether the scale or the rotation stays as it is.
 
     Returns:
         rotation, translation, scale, mean distance of the last pairs.
@@ -182,14 +182,14 @@ def align_by_closest_points(query, model, rotation, translation, scale, rounds, 
                     cross[e, d] += squares[k] * (query[first[k], e] - query_mean[e]) * a
         if not spread > 0.0:
             break
-        left, singular, right = np.linalg.svd(cross)
-        sign = np.linalg.det(left) * np.linalg.det(right)
-        if sign < 0.0:
-            left[:, 2] = -left[:, 2]
-            singular[2] = -singular[2]
-        rotation = np.ascontiguousarray(left) @ np.ascontiguousarray(right)
-        if not keeps_scale:
-            scale = (singular[0] + singular[1] + singular[2]) / spread
+        if not keeps_rotation:
+            left, _, right = np.linalg.svd(cross)
+            if np.linalg.det(left) * np.linalg.det(right) < 0.0:
+                left[:, 2] = -left[:, 2]
+            rotation = np.ascontiguousarray(left) @ np.ascontiguousarray(right)
+        along = (rotation * cross).sum()
+        if along > 0.0 and not keeps_scale:
+            scale = along / spread
         for d in range(3):
             translation[d] = query_mean[d] - scale * (
                 rotation[d, 0] * model_mean[0] + rotation[d, 1] * model_mean[1] + rotation[d, 2] * model_mean[2]

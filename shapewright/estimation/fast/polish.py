@@ -35,9 +35,9 @@ class Polish:
     target: Target
     best: Candidate
     columns: Int[np.ndarray, " D"]
-    directions: Float[np.ndarray, "N N"]
-    steps: Float[np.ndarray, " N"]
-    signs: Float[np.ndarray, " N"]
+    directions: Float[np.ndarray, "N K"]
+    steps: Float[np.ndarray, " K"]
+    signs: Float[np.ndarray, " K"]
     gain: float = np.inf
     evaluations: int = 0
 

@@ -138,6 +138,7 @@ class Search:
                 STARTS,
                 known_rotations=task[1].rotations,
                 known_scale=task[1].scale,
+                keeps_rotation=task[1].keeps_rotation,
             ),
             tasks,
         )

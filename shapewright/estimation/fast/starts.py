@@ -54,6 +54,7 @@ def find_starts(
     *,
     known_rotations: Float[np.ndarray, "R 3 3"] | None = None,
     known_scale: float | None = None,
+    keeps_rotation: bool = False,
 ) -> list[Candidate]:
     """Find the poses in which instances of one model come nearest to the query.
 
@@ -64,6 +65,7 @@ def find_starts(
         kept: candidates to return; three times as many are aligned by closest points.
         known_rotations: the only rotations from model to query space to try, if something is known of them.
         known_scale: from model to query space.
+        keeps_rotation: whether the known rotations are exact.
 
     Returns:
         Candidates with their ``misfit``, the best first.
@@ -74,7 +76,7 @@ def find_starts(
         for one in _score(target, model, row, points, known_rotations, known_scale)
     ]
     scored.sort(key=lambda one: one.score)
-    candidates = [_aligned(target, one, known_scale) for one in scored[: 3 * kept]]
+    candidates = [_aligned(target, one, known_scale, keeps_rotation) for one in scored[: 3 * kept]]
     candidates.sort(key=lambda one: one.misfit)
     return candidates[:kept]
 
@@ -142,7 +144,7 @@ def _score(
     return [_Scored(model, values, rotations[i], points, center, radius, float(scores[i])) for i in best]
 
 
-def _aligned(target: Target, start: _Scored, known_scale: float | None) -> Candidate:
+def _aligned(target: Target, start: _Scored, known_scale: float | None, keeps_rotation: bool) -> Candidate:
     scale = target.radius / start.radius if known_scale is None else known_scale
     rotation, translation, found_scale, misfit = align_by_closest_points(
         target.points[:POINTS],
@@ -152,6 +154,7 @@ def _aligned(target: Target, start: _Scored, known_scale: float | None) -> Candi
         scale,
         ROUNDS,
         known_scale is not None,
+        keeps_rotation,
     )
     candidate = Candidate(start.model, start.values, rotation, translation, found_scale)
     return replace(candidate, misfit=float(misfit))
