@@ -26,6 +26,8 @@ SAMPLE = Path(__file__).resolve().parent.parent / "examples" / "goblet.ply"
 READY_WITHIN_S = 300.0
 VIEWS = 30
 """More than usual: the few pictures that the demo trains with leave single views unsure."""
+SHOWN = ("layer", "verdict", "parameters", "ratios", "alternatives", "distances")
+"""What the report keeps of an estimation."""
 
 
 def demo(
@@ -53,11 +55,10 @@ def demo(
     ] = None,
     variations: Annotated[int, typer.Option(min=1, help="Random variations of each class to learn from.")] = 60,
     images: Annotated[int, typer.Option(min=1, help="Images of each variation.")] = 5,
-    samples: Annotated[int, typer.Option(min=1, help="Random instances of the estimation's first layer.")] = 1500,
     seed: Annotated[int, typer.Option(min=0, help="Seed of all random choices.")] = 0,
     settings_file: Annotated[
         Path | None,
-        typer.Option("--settings", help='JSON file with settings of the estimation: {"image_size": 256}.'),
+        typer.Option("--settings", help='JSON file with settings of the estimation: {"estimator": "reference"}.'),
     ] = None,
     as_json: AsJson = False,
 ) -> None:
@@ -83,7 +84,7 @@ def demo(
     finished = False
     try:
         _refuse_early(query)
-        estimating = _quick_settings(samples, seed) | (read_object(settings_file) if settings_file else {})
+        estimating = {"seed": seed} | (read_object(settings_file) if settings_file else {})
         output.mkdir(parents=True, exist_ok=True)
         with contextlib.ExitStack() as stack:
             folder = data_dir or stack.enter_context(_temporary_folder())
@@ -110,15 +111,6 @@ def demo(
     except (ShapewrightError, OSError) as error:
         stderr().print(f"shapewright: the demo stopped: {error}", markup=False)
         raise typer.Exit(1) from None
-
-
-def _quick_settings(samples: int, seed: int) -> dict[str, Any]:
-    """Settings for a first look, in the form that the service takes them."""
-    from shapewright.estimation.settings import EstimationSettings
-
-    names = ("samples", "seed", "surface_points", "image_size", "subdivision_steps", "step_sizes")
-    settings = EstimationSettings.quick(samples=samples, seed=seed).to_dict()
-    return {name: settings[name] for name in names}
 
 
 def _models_of(classes: list[str] | None) -> list[str]:
@@ -203,7 +195,6 @@ def _walk(
         {"mesh_id": uploaded["id"], "class_name": found["class_name"], "settings": estimating},
     )
     fit = estimation["result"]
-    model = next(model for model in models if model["id"] == estimation["model_id"])
 
     _step(console, 5, "what was found")
     console.print(probability_table(found["probabilities"]))
@@ -217,10 +208,8 @@ def _walk(
         "known": found["known"],
         "probabilities": found["probabilities"],
         "classifier_metrics": classifier["metrics"],
-        "model": model["name"],
-        "layer": fit["layer"],
-        "parameters": fit["parameters"],
-        "distances": fit["distances"],
+        "model": fit["model"]["name"],
+        **{name: fit[name] for name in SHOWN},
         "seconds": {"classification": found["seconds"], "estimation": fit["seconds"]},
         "picture_file": str(picture),
         "mesh_file": str(glb),

@@ -15,7 +15,9 @@ from shapewright.errors import EstimationError, MeshFileError
 from shapewright.progress import LimitedProgress
 
 if TYPE_CHECKING:
+    from shapewright.estimation import Estimation
     from shapewright.estimation.query import Axis, Unit
+    from shapewright.mesh import TriangleMesh
 
 UNITS = ("mm", "cm", "m", "in")
 AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
@@ -50,11 +52,24 @@ def estimate(
     picture: Annotated[
         Path | None, typer.Option(help="Write a PNG: the query, the fitted mesh, and both in one.")
     ] = None,
+    residuals: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--residuals",
+            metavar="FILE",
+            help="Write how far query and fit are apart as colors: a scene (.glb) or a picture (.png). Repeatable.",
+            show_default=False,
+        ),
+    ] = None,
     quick: Annotated[
-        bool, typer.Option("--quick", help="Coarser settings for a first look: about a fifth of the time.")
+        bool,
+        typer.Option("--quick", help="Coarser settings of the reference: about a fifth of its time."),
     ] = False,
     samples: Annotated[
-        int | None, typer.Option(min=1, help="Random instances of layer 1 (default: 10000).", show_default=False)
+        int | None,
+        typer.Option(
+            min=1, help="Random instances that the reference starts from (default: 10000).", show_default=False
+        ),
     ] = None,
     seed: Annotated[
         int | None, typer.Option(min=0, help="Seed of all random choices (default: 0).", show_default=False)
@@ -72,7 +87,10 @@ def estimate(
     ] = None,
     estimator: Annotated[
         str | None,
-        typer.Option(help=f"Who searches: {', '.join(ESTIMATORS)}. The reference is the paper.", show_default=False),
+        typer.Option(
+            help="Who searches: fast (the default, seconds), or reference (the paper step by step, minutes).",
+            show_default=False,
+        ),
     ] = None,
     time_limit_s: Annotated[
         float | None,
@@ -110,9 +128,10 @@ def estimate(
 ) -> None:
     """Estimate the parameters of a procedural model, or of the best one of a class, so that it rebuilds a mesh.
 
-    The fitted mesh is written in the coordinates of your file, so that both lie on top of each other. The default
-    settings are the method's own and take minutes; --quick is for a first look, --time-limit for a fixed wait. Say the
-    unit of your file if you know it: without it the size of the mesh says nothing, only proportions do.
+    The fitted mesh is written in the coordinates of your file, so that both lie on top of each other. It takes seconds
+    for a model or a class; --time-limit makes sure. Beside each value stands what the mesh says about it: where it
+    lies with a probability of 90 %, and whether it is determined at all. Say the unit of your file if you know it:
+    without it the size of the mesh says nothing, only proportions do.
 
     A folder gives a table with one row for each mesh below it; a mesh that cannot be estimated is a row with the
     reason. Running the command again estimates only what has no row yet.
@@ -121,21 +140,23 @@ def estimate(
 
       [bold]shapewright estimate goblet.ply --model glass_with_stem[/]
       [bold]shapewright estimate goblet.ply --class glass_with_stem --units mm --up +z[/]
-      [bold]shapewright estimate goblet.ply -m glass_with_stem --quick -o fitted.glb --picture fit.png[/]
+      [bold]shapewright estimate goblet.ply -m glass_with_stem -o fitted.glb --picture fit.png --residuals off.png[/]
+      [bold]shapewright estimate goblet.ply -m glass_with_stem --estimator reference --quick[/]
       [bold]shapewright estimate DIR --class glass_with_stem -o glasses.parquet[/]
       [bold]shapewright estimate DIR --class glass_with_stem -o t.csv --sort stem_length/bowl_depth --strip s.png[/]
     """
     if not mesh.is_dir():
-        _refuse_endings(output, picture)
+        _refuse_endings(output, picture, residuals or [])
     if (class_name is None) == (not models):
         raise typer.BadParameter("name models or a class", param_hint="--model")
     from shapewright.estimation import EstimationCancelled, EstimationSettings, Query
     from shapewright.estimation import estimate as run_estimation
     from shapewright.mesh.file import load_mesh
 
-    chosen = EstimationSettings.quick().to_dict() if quick else {}
-    if settings_file is not None:
-        chosen |= read_object(settings_file)
+    read = {} if settings_file is None else read_object(settings_file)
+    if (estimator or read.get("estimator")) != "reference":
+        _refuse_settings_of_the_reference({"--quick": quick, "--samples": samples is not None})
+    chosen = (EstimationSettings.quick().to_dict() if quick else {}) | read
     given = {"samples": samples, "seed": seed, "estimator": estimator}
     chosen |= {name: value for name, value in given.items() if value is not None}
     settings = EstimationSettings.from_dict(chosen)
@@ -146,8 +167,9 @@ def estimate(
     if mesh.is_dir():
         from cli.estimate_folder import FolderRequest, estimate_folder
 
-        if output is None or picture is not None:
-            raise typer.BadParameter("a folder needs a table to write, and has no --picture", param_hint="--output")
+        if output is None or picture is not None or residuals:
+            message = "a folder needs a table to write, and has neither --picture nor --residuals"
+            raise typer.BadParameter(message, param_hint="--output")
         limits = (time_limit_s, jobs or len(os.sched_getaffinity(0)))
         request = FolderRequest(mesh, generators, settings, unit, axis, output, sort, descending, strip, *limits)
         estimate_folder(request, as_json=as_json)
@@ -168,31 +190,58 @@ def estimate(
                 raise EstimationError("the time was over before anything was found", where="--time-limit") from None
             estimation = cancelled.best
     seconds = time.monotonic() - started_s
-    for path in (output, picture):
-        if path is not None:
-            path.parent.mkdir(parents=True, exist_ok=True)
+    written = [path for path in (output, picture, *(residuals or [])) if path is not None]
+    for path in written:
+        path.parent.mkdir(parents=True, exist_ok=True)
     if output is not None:
         estimation.mesh.save(output)
     if picture is not None:
         from cli.picture import save_side_by_side
 
         save_side_by_side(mesh_read, estimation.mesh, picture, model_to_query=estimation.pose.rotation)
+    for path in residuals or []:
+        _write_residuals(mesh_read, estimation, path)
     document = estimation.to_dict()
     if as_json:
-        files = {"mesh_file": output and str(output), "picture_file": picture and str(picture)}
+        files = {
+            "mesh_file": output and str(output),
+            "picture_file": picture and str(picture),
+            "residual_files": [str(path) for path in residuals or []],
+        }
         print_json({"query": str(mesh), **document, **files, "seconds": round(seconds, 3)})
         return
     print_estimation(stdout(), document, seconds=seconds)
-    for path in (output, picture):
-        if path is not None:
-            typer.echo(f"written: {path}")
+    for path in written:
+        typer.echo(f"written: {path}")
 
 
-def _refuse_endings(output: Path | None, picture: Path | None) -> None:
+def _refuse_settings_of_the_reference(given: dict[str, bool]) -> None:
+    for option, is_given in given.items():
+        if is_given:
+            message = "only the reference estimator has it (--estimator reference); the fast one takes seconds"
+            raise typer.BadParameter(message, param_hint=option)
+
+
+def _write_residuals(query: "TriangleMesh", estimation: "Estimation", path: Path) -> None:
+    from cli.picture import save_picture, upright_view
+    from shapewright.estimation.residual_views import ResidualViews
+    from shapewright.whole_file import write_whole
+
+    views = ResidualViews.of(query, estimation.mesh)
+    if path.suffix.lower() == ".glb":
+        write_whole(path, views.glb())
+    else:
+        save_picture(views.picture(rotation=upright_view(estimation.pose.rotation)), path)
+
+
+def _refuse_endings(output: Path | None, picture: Path | None, residuals: list[Path]) -> None:
     if output is not None and output.suffix.lower() not in (".glb", ".obj", ".off", ".ply", ".stl"):
         raise MeshFileError("write one of .glb, .obj, .off, .ply, .stl", where=str(output))
     if picture is not None and picture.suffix.lower() != ".png":
         raise EstimationError("pictures are written as .png", where=str(picture))
+    for path in residuals:
+        if path.suffix.lower() not in (".glb", ".png"):
+            raise EstimationError("residuals are written as .glb or .png", where=str(path))
 
 
 def _one_of(value: str | None, known: Iterable[str], option: str) -> None:

@@ -187,10 +187,8 @@ def _stoppable(stop: "Event", time_limit_s: float | None) -> Progress:
             raise Cancelled
 
     progress = CallbackProgress(look)
-    if time_limit_s is None:
-        return progress
-    end_s = time.monotonic() + time_limit_s
-    return LimitedProgress(progress, lambda: time.monotonic() >= end_s)
+    started_s = time.monotonic()
+    return LimitedProgress(progress, lambda: time_limit_s is not None and time.monotonic() - started_s >= time_limit_s)
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from cli.report import parameter_table
+from cli.report import STATUS_TEXTS, parameter_table
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -13,8 +13,17 @@ LAYERS = {
     2: "The surfaces lie close together, but seen from all sides the two differ more than they should.",
     3: "The fit looks like the mesh from all sides.",
 }
+EXPLANATIONS = {
+    "determined": "the mesh says what it is",
+    "determined_up_to_scale": "certain in proportion to other lengths; with --units the lengths themselves are",
+    "not_determined": "other values would fit about as well",
+    "at_range_end": "as far as the model allows; the mesh may ask for more",
+}
 THRESHOLDS = {"surface": "surface distance", "zbuffer": "z-buffer distance"}
 MOST_RATIOS = 8
+MOST_PARTS = 4
+NOTICED_SHARE = 0.05
+"""Of a part's area that is not in the mesh; less is not worth a word."""
 
 
 def print_estimation(console: "Console", document: Mapping[str, Any], *, seconds: float) -> None:
@@ -30,7 +39,7 @@ def print_estimation(console: "Console", document: Mapping[str, Any], *, seconds
         console.print("[yellow]The search was stopped before its end. This is the best that it had found.[/]")
     console.print(f"[bold]{name}[/] rebuilds the mesh with these parameters:")
     console.print(parameter_table(document["parameters"]))
-    for lines in (_ratios, _combinations, _alternatives, _tried, _verdict):
+    for lines in (_explanations, _ratios, _combinations, _alternatives, _tried, _verdict):
         for line in lines(document):
             console.print(line)
     distances = document["distances"]
@@ -38,6 +47,13 @@ def print_estimation(console: "Console", document: Mapping[str, Any], *, seconds
         f"Distances: panorama {distances['panorama']:.4g}, surface {distances['surface']:.4g}, "
         f"z-buffer {distances['zbuffer']:.4g}. {seconds:.1f} s with the {document['estimator']} estimator."
     )
+
+
+def _explanations(document: Mapping[str, Any]) -> Iterator[str]:
+    statuses = {parameter.get("status") for parameter in document["parameters"] if parameter["active"]}
+    for status, explanation in EXPLANATIONS.items():
+        if status in statuses:
+            yield f"[dim]  {STATUS_TEXTS[status]}: {explanation}.[/]"
 
 
 def _ratios(document: Mapping[str, Any]) -> Iterator[str]:
@@ -59,7 +75,7 @@ def _alternatives(document: Mapping[str, Any]) -> Iterator[str]:
     if document["alternatives"]:
         yield "Other answers that fit nearly as well:"
     for number, other in enumerate(document["alternatives"], start=1):
-        yield f"  {number}. {other['label']} ({other['kind']}), z-buffer distance {other['distances']['zbuffer']:.4g}"
+        yield f"  {number}. {other['label']}, z-buffer distance {other['distances']['zbuffer']:.3g}"
 
 
 def _tried(document: Mapping[str, Any]) -> Iterator[str]:
@@ -89,16 +105,25 @@ def _verdict(document: Mapping[str, Any]) -> Iterator[str]:
     residuals = verdict["residuals"] if verdict else None
     if residuals:
         yield (
-            f"The fit follows {residuals['followed_share']:.0%} of the mesh; "
-            f"{residuals['invented_share']:.0%} of the fit is not in the mesh."
+            f"The model follows {_share(residuals['followed_share'])} of the mesh; "
+            f"{_share(residuals['invented_share'])} of the fit is not in the mesh."
         )
         yield from _invented(residuals["by_part"])
 
 
 def _invented(parts: Iterable[Mapping[str, Any]]) -> Iterator[str]:
-    worst = max(parts, key=lambda part: part["share_of_area"] * part["invented_share"], default=None)
-    if worst is not None and worst["invented_share"] > 0:
-        yield f"  Most of that is in {worst['name']} ({worst['invented_share']:.0%} of it)."
+    worst = sorted(parts, key=lambda part: -part["share_of_area"] * part["invented_share"])
+    noticed = [part for part in worst if part["invented_share"] >= NOTICED_SHARE][:MOST_PARTS]
+    if noticed:
+        listed = ", ".join(f"{part['name']} ({_share(part['invented_share'])} of it)" for part in noticed)
+        yield f"  Parts that are not: {listed}."
+
+
+def _share(fraction: float) -> str:
+    """Whole percents; what is nearly all or nearly nothing is not rounded to it."""
+    if 0 < fraction < 0.005:
+        return "less than 1 %"
+    return "more than 99 %" if 0.995 < fraction < 1 else f"{100 * fraction:.0f} %"
 
 
 def _interval(interval: list[float] | None) -> str:

@@ -44,8 +44,14 @@ def save_side_by_side(
             of the model upwards) however the query lies in its file.
         size: pixels of each of the three pictures.
     """
-    from shapewright.rendering import compose_side_by_side, three_quarter_view
+    from shapewright.rendering import compose_side_by_side
+
+    save_picture(compose_side_by_side(query, fitted, rotation=upright_view(model_to_query), size=size), path)
+
+
+def upright_view(model_to_query: "Float[np.ndarray, '3 3'] | None" = None) -> "Float[np.ndarray, '3 3']":
+    """Return the rotation of a picture that shows z of a model upwards, however the query lies in its file."""
+    from shapewright.rendering import three_quarter_view
 
     view = three_quarter_view("z")
-    rotation = view if model_to_query is None else view @ model_to_query.T
-    save_picture(compose_side_by_side(query, fitted, rotation=rotation, size=size), path)
+    return view if model_to_query is None else view @ model_to_query.T

@@ -7,20 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from shapewright.distances.alignment import AlignmentSettings
-
 LESS = {
     "variations=100, images_per_variation=5, negatives=50": "variations=16, images_per_variation=3, negatives=8",
-    "EstimationSettings.quick()": "EstimationSettings(**less)",
     "default_rng(0), 1000)": "default_rng(0), 10)",
-}
-FEW = {
-    "samples": 40,
-    "surface_points": 100,
-    "image_size": 32,
-    "subdivision_steps": 0,
-    "step_sizes": (0.5,),
-    "alignment": AlignmentSettings(0.1, 0.1 * np.pi, 0.1),
 }
 
 
@@ -28,7 +17,7 @@ def blocks(repository: Path) -> list[str]:
     text = (repository / "README.md").read_text(encoding="utf-8")
     found = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
     for block, wanted in zip(
-        found, ("EstimationSettings.quick()", "default_rng(0), 1000)", "InferenceSession"), strict=True
+        found, ("shapewright.estimate(query", "default_rng(0), 1000)", "InferenceSession"), strict=True
     ):
         assert wanted in block, "the replacements below no longer fit the README"
     return found
@@ -46,7 +35,7 @@ def test_classify_and_rebuild(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     code = blocks(repository)[0].replace("examples/goblet.ply", str(repository / "examples" / "goblet.ply"))
-    names = run(code, {"less": FEW})
+    names = run(code, {})
     assert names["answer"].class_name == "glass_with_stem"
     Path("classifier.onnx").write_bytes(names["trained"].onnx)
     elsewhere = blocks(repository)[2].replace("examples/goblet.ply", str(repository / "examples" / "goblet.ply"))

@@ -118,9 +118,7 @@ def test_the_fast_estimator_needs_no_bank_and_its_residuals_are_kept(site: Site)
     assert len(np.unique(colors, axis=0)) > 1, "its corners are farther from the rounded fit than its sides"
 
 
-def test_when_the_time_is_over_the_best_until_then_is_the_answer(
-    site: Site, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_when_the_time_is_over_the_best_until_then_is_the_answer(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
     ticks = itertools.count()
     monkeypatch.setattr(JobContext, "seconds", property(lambda context: float(next(ticks))))
     row = site.queue_estimation(2000, send=False, time_limit_s=8.0)

@@ -80,10 +80,10 @@ def test_what_is_known_stands_beside_each_value(document: dict[str, Any]) -> Non
         "11 … 13 mm",
         "up to scale",
         "Stem : Bowl = 1.5 (90 %: 1.4 … 1.6)",
-        "1. upside down (pose), z-buffer distance 0.82",
+        "1. upside down, z-buffer distance 0.82",
         "z-buffer distance is 0.81; it should be below 0.7",
-        "follows 80% of the mesh",
-        "in handle (50% of it)",
+        "follows 80 % of the mesh",
+        "handle (50 % of it)",
     ):
         assert expected in text
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from command_line import shapewright, write_lamp_model
 from PIL import Image
 
@@ -92,12 +93,11 @@ def test_a_query_is_rebuilt_where_it_lies(folder: Path, tmp_path: Path) -> None:
     turn = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     placed = query.transformed(turn, np.array([5.0, -3.0, 1.0]), 12.0)
     placed.save(tmp_path / "placed.ply")
-    small = tmp_path / "small.json"
-    small.write_text(json.dumps({"surface_points": 300, "image_size": 64, "subdivision_steps": 1}))
+    colors, scene = tmp_path / "results" / "apart.png", tmp_path / "results" / "apart.glb"
     fitted, picture = tmp_path / "results" / "fitted.glb", tmp_path / "results" / "fit.png"
     document = shapewright(
-        "estimate", tmp_path / "placed.ply", "--model", folder / "lamp.json", "--samples", 30, "--settings", small,
-        "-o", fitted, "--picture", picture, "--json",
+        "estimate", tmp_path / "placed.ply", "--model", folder / "lamp.json", "-o", fitted, "--picture", picture,
+        "--residuals", colors, "--residuals", scene, "--json",
     ).document  # fmt: skip
     length = next(p for p in document["parameters"] if p["name"] == "post_length")
     assert length["value"] == pytest.approx(1.4, rel=0.15)
@@ -106,12 +106,16 @@ def test_a_query_is_rebuilt_where_it_lies(folder: Path, tmp_path: Path) -> None:
     assert np.abs(load_mesh(fitted).bounds - placed.bounds).max() < 0.15 * np.ptp(placed.bounds, axis=0).max()
     with Image.open(picture) as image:
         assert image.width == 3 * image.height
-    small.write_text('{"surface_points": 50, "image_size": 16, "subdivision_steps": 0, "step_sizes": [0.5]}')
-    printed = shapewright(
-        "estimate", tmp_path / "placed.ply", "-m", folder / "lamp.json", "--samples", 2, "--settings", small
-    )
-    assert "length of the post" in printed.stdout
-    assert "layer" in printed.stdout
+    with Image.open(colors) as image:
+        assert image.width > 1.5 * image.height
+    assert set(trimesh.load(scene).geometry) == {"fit", "query"}
+    assert document["residual_files"] == [str(colors), str(scene)]
+
+
+def test_settings_of_the_reference_are_refused_without_it(folder: Path) -> None:
+    arguments = ("estimate", folder / "query-lamp.off", "-m", folder / "lamp.json")
+    for option in (("--quick",), ("--samples", 5)):
+        assert "--estimator reference" in shapewright(*arguments, *option).refused()
 
 
 def test_of_several_models_the_best_one_is_found(folder: Path, tmp_path: Path) -> None:
@@ -119,13 +123,16 @@ def test_of_several_models_the_best_one_is_found(folder: Path, tmp_path: Path) -
     small.write_text('{"surface_points": 50, "image_size": 16, "subdivision_steps": 0, "step_sizes": [0.5]}')
     arguments = (
         "estimate", folder / "query-lamp.off", "-m", folder / "slab.json", "-m", folder / "lamp.json",
-        "--samples", 30, "--settings", small,
+        "--estimator", "reference", "--samples", 30, "--settings", small,
     )  # fmt: skip
     document = shapewright(*arguments, "--json").document
     assert document["model"]["name"] == "lamp"
     assert [one["model"]["name"] for one in document["tried"]] == ["lamp", "slab"]
     assert document["parameters"][0]["active"]
-    assert "fitted with the model lamp" in shapewright(*arguments).stdout
+    printed = shapewright(*arguments).stdout
+    assert "lamp rebuilds the mesh" in printed
+    assert "length of the post" in printed
+    assert "Layer" in printed
 
 
 def test_a_class_is_all_of_its_models() -> None:

@@ -17,7 +17,8 @@ export function ParameterTable({ parameters }: { parameters: ParameterEstimate[]
         <tr>
           <th scope="col">Parameter</th>
           <th scope="col" className="number">
-            {parameters.some(({ interval }) => interval) ? "Value, 90 % interval" : "Value"}
+            Value
+            {parameters.some(({ interval }) => interval) && <small>90 % interval</small>}
           </th>
           <th scope="col">Range</th>
         </tr>

@@ -42,7 +42,7 @@ export const STATUS: Record<ParameterStatus, StatusWords> = {
   inactive: { word: "Inactive", explanation: "Another value makes it meaningless." },
   at_range_end: {
     word: "At the end of its range",
-    explanation: "The mesh asks for more than the model allows.",
+    explanation: "As far as the model allows; the mesh may ask for more.",
   },
 };
 
