@@ -11,6 +11,8 @@ class JobKind(StrEnum):
     DESCRIBE_VARIATIONS = "describe_variations"
     CLASSIFY = "classify"
     ESTIMATE = "estimate"
+    ESTIMATE_COLLECTION = "estimate_collection"
+    ESTIMATE_MESHES = "estimate_meshes"
     RENDER_THUMBNAIL = "render_thumbnail"
     INDEX_COLLECTION = "index_collection"
     RETRIEVE = "retrieve"

@@ -9,11 +9,11 @@ from collections.abc import Sequence
 from datetime import datetime
 from typing import Any, Final
 
-from sqlalchemy import delete, select
-from sqlalchemy.orm import Session
+from sqlalchemy import delete, or_, select
+from sqlalchemy.orm import Session, aliased
 
 from models_store.claims import Claim, look
-from models_store.job_kinds import JobKind, JobState
+from models_store.job_kinds import FINAL_STATES, JobKind, JobState
 from models_store.jobs import create_job
 from models_store.tables import JobRow
 
@@ -52,6 +52,14 @@ def part_states(session: Session, job_id: str) -> dict[str, JobState]:
     """The state of every part of a job, by its id."""
     rows = session.execute(select(JobRow.id, JobRow.state).where(JobRow.parent_id == job_id))
     return {row.id: row.state for row in rows}
+
+
+def is_in_vain(session: Session, part_id: str) -> bool:
+    """Whether nobody wants the outcome of this part any more: its job has ended, or is asked to stop."""
+    job = aliased(JobRow)
+    ended = or_(job.state.in_(FINAL_STATES), job.cancel_requested)
+    query = select(JobRow.id).join(job, job.id == JobRow.parent_id).where(JobRow.id == part_id, ended)
+    return session.scalar(query) is not None
 
 
 def _delete(session: Session, condition: Any) -> bool:

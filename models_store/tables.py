@@ -278,3 +278,46 @@ class RetrievalRow(Base):
     sheet_key: Mapped[str | None] = mapped_column(Text)
     created_at: Mapped[datetime]
     job: Mapped[JobRow] = relationship(lazy="joined", innerjoin=True)
+
+
+class CollectionEstimationRow(Base):
+    """Which parameter values rebuild each of many meshes; what is found is in :class:`EstimatedMeshRow`.
+
+    Asked for with a class, ``model_ids`` are the models of the class then, and ``model_id`` is null.
+    """
+
+    __tablename__ = "collection_estimations"
+    __table_args__ = (Index(None, "created_at", "id"),)
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    job_id: Mapped[str] = mapped_column(ForeignKey(JobRow.id), unique=True)
+    collection_id: Mapped[str | None] = mapped_column(ForeignKey(CollectionRow.id), index=True)
+    mesh_ids: Mapped[list[str]]
+    model_id: Mapped[str | None] = mapped_column(ForeignKey(ModelRow.id), index=True)
+    class_name: Mapped[str | None] = mapped_column(Text)
+    model_ids: Mapped[list[str]]
+    units: Mapped[str | None] = mapped_column(String(2))
+    up: Mapped[str | None] = mapped_column(String(2))
+    settings: Mapped[dict[str, Any]]
+    created_at: Mapped[datetime]
+    job: Mapped[JobRow] = relationship(lazy="joined", innerjoin=True)
+
+
+class EstimatedMeshRow(Base):
+    """One mesh of a collection estimation: what was found, or ``error``. Written once, while the job runs.
+
+    ``measures`` are the numbers by which rows are sorted, by column.
+    """
+
+    __tablename__ = "estimated_meshes"
+
+    estimation_id: Mapped[str] = mapped_column(
+        ForeignKey(CollectionEstimationRow.id, ondelete="CASCADE"), primary_key=True
+    )
+    position: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    mesh_id: Mapped[str] = mapped_column(ForeignKey(MeshRow.id), index=True)
+    answer: Mapped[dict[str, Any] | None]
+    measures: Mapped[dict[str, Any]]
+    error: Mapped[str | None] = mapped_column(Text)
+    seconds: Mapped[float | None]
+    created_at: Mapped[datetime]

@@ -84,8 +84,8 @@ class LiveService:
         return sorted(path for path in (self.data_dir / "artifacts").rglob("*") if path.is_file())
 
     def assert_nothing_left(self) -> None:
-        kinds = ("models", "meshes", "classifiers", "classifications", "estimations", "collections", "retrievals")
-        for resource in (*kinds, "jobs"):
+        asked = ("classifications", "estimations", "collection-estimations", "collections", "retrievals")
+        for resource in ("models", "meshes", "classifiers", *asked, "jobs"):
             assert self.client.get(f"/v1/{resource}").json()["items"] == [], resource
         assert self.artifacts() == []
 

@@ -18,12 +18,27 @@ from models_store.catalog.classifiers import (
     record_classifier,
     request_classifier,
 )
+from models_store.catalog.collection_estimations import (
+    DoneCounts,
+    count_estimated,
+    get_collection_estimation,
+    list_collection_estimations,
+    request_collection_estimation,
+)
 from models_store.catalog.collections import (
     get_collection,
     index_keys,
     list_collections,
     record_collection,
     request_collection,
+)
+from models_store.catalog.estimated_meshes import (
+    RankedMesh,
+    RowOrder,
+    all_estimated,
+    estimated_positions,
+    page_of_estimated,
+    record_estimated_mesh,
 )
 from models_store.catalog.estimations import (
     get_estimation,
@@ -49,11 +64,18 @@ from models_store.catalog.retrievals import (
 )
 
 __all__ = [
+    "DoneCounts",
+    "RankedMesh",
+    "RowOrder",
     "add_mesh",
     "add_model",
+    "all_estimated",
+    "count_estimated",
+    "estimated_positions",
     "get_classification",
     "get_classifier",
     "get_collection",
+    "get_collection_estimation",
     "get_estimation",
     "get_mesh",
     "get_model",
@@ -62,6 +84,7 @@ __all__ = [
     "list_classes",
     "list_classifications",
     "list_classifiers",
+    "list_collection_estimations",
     "list_collections",
     "list_estimations",
     "list_meshes",
@@ -71,16 +94,19 @@ __all__ = [
     "mesh_names",
     "models_of_class",
     "newest_classifier",
+    "page_of_estimated",
     "ready_classifier",
     "record_classification",
     "record_classifier",
     "record_collection",
+    "record_estimated_mesh",
     "record_estimation",
     "record_retrieval",
     "record_thumbnail",
     "request_classification",
     "request_classifier",
     "request_collection",
+    "request_collection_estimation",
     "request_estimation",
     "request_retrieval",
     "request_thumbnail",

@@ -13,6 +13,8 @@ RESULT_PATHS = {
     JobKind.DESCRIBE_VARIATIONS: "/v1/classifiers",
     JobKind.CLASSIFY: "/v1/classifications",
     JobKind.ESTIMATE: "/v1/estimations",
+    JobKind.ESTIMATE_COLLECTION: "/v1/collection-estimations",
+    JobKind.ESTIMATE_MESHES: "/v1/collection-estimations",
     JobKind.RENDER_THUMBNAIL: "/v1/models",
     JobKind.INDEX_COLLECTION: "/v1/collections",
     JobKind.RETRIEVE: "/v1/retrievals",

@@ -167,7 +167,10 @@ def known_ids(filled_service: LiveService) -> dict[str, str]:
     retrieval = live.client.post("/v1/retrievals", json={"collection_id": collection["id"], "class_name": "box"}).json()
     estimation = live.client.post("/v1/estimations", json={"mesh_id": mesh["id"], "model_id": model["id"]}).json()
     live.client.post(f"{estimation['job']['url']}/cancel").raise_for_status()  # so that its stream ends
+    several = {"mesh_ids": [mesh["id"]], "model_id": model["id"]}
+    collection_estimation = live.client.post("/v1/collection-estimations", json=several).json()
     return {
+        "collection-estimations": collection_estimation["id"],
         "models": model["id"],
         "meshes": mesh["id"],
         "classifiers": classifier["id"],

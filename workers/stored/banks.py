@@ -18,6 +18,17 @@ if TYPE_CHECKING:
 log = structlog.get_logger(__name__)
 
 
+def bank_of(
+    context: JobContext, settings: "EstimationSettings", compiled: "InstanceGenerator", progress: Progress
+) -> "PanoramaBank":
+    """Find the bank that an estimation with these settings wants, or build and keep it.
+
+    Raises:
+        BankCancelled: the progress cancelled.
+    """
+    return stored_bank(context, compiled, settings) or new_bank(context, compiled, settings, progress)
+
+
 def stored_bank(
     context: JobContext, compiled: "InstanceGenerator", settings: "EstimationSettings"
 ) -> "PanoramaBank | None":

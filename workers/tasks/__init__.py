@@ -8,6 +8,8 @@ from workers.context import JobContext, Outcome
 from workers.tasks.classify import classify
 from workers.tasks.describe_variations import describe_variations
 from workers.tasks.estimate import estimate
+from workers.tasks.estimate_collection import estimate_collection
+from workers.tasks.estimate_meshes import estimate_meshes
 from workers.tasks.index_collection import index_collection
 from workers.tasks.render_thumbnail import render_thumbnail
 from workers.tasks.retrieve import retrieve
@@ -18,6 +20,8 @@ TASKS: Final[Mapping[JobKind, Callable[[JobContext], Outcome]]] = {
     JobKind.DESCRIBE_VARIATIONS: describe_variations,
     JobKind.CLASSIFY: classify,
     JobKind.ESTIMATE: estimate,
+    JobKind.ESTIMATE_COLLECTION: estimate_collection,
+    JobKind.ESTIMATE_MESHES: estimate_meshes,
     JobKind.RENDER_THUMBNAIL: render_thumbnail,
     JobKind.INDEX_COLLECTION: index_collection,
     JobKind.RETRIEVE: retrieve,

@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING, cast
 
 from models_store import catalog
 from shapewright.errors import Cancelled, EstimationError
-from shapewright.progress import LimitedProgress, Progress
+from shapewright.progress import LimitedProgress
 from workers.context import JobContext, Outcome
 from workers.finite import finite
-from workers.stored.banks import new_bank, stored_bank
+from workers.stored.banks import bank_of
 
 if TYPE_CHECKING:
-    from shapewright.estimation import Estimation, InstanceGenerator, PanoramaBank, Query
+    from shapewright.estimation import Estimation, Query
     from shapewright.estimation.query import Axis, Unit
 
 
@@ -35,15 +35,11 @@ def estimate(context: JobContext) -> Outcome:
     limit = LimitedProgress(
         context.progress, lambda: row.time_limit_s is not None and context.seconds >= row.time_limit_s
     )
-
-    def banks(compiled: "InstanceGenerator", progress: Progress) -> "PanoramaBank":
-        return stored_bank(context, compiled, settings) or new_bank(context, compiled, settings, progress)
-
     context.progress.report(0.0, "reading the mesh")
     query = Query(context.load_query(row.mesh_id), units=cast("Unit | None", row.units), up=cast("Axis | None", row.up))
     generators = [compile_model(context.load_model(model_id)) for model_id in model_ids]
     try:
-        found = find(query, generators, settings, progress=limit, banks=banks)
+        found = find(query, generators, settings, progress=limit, banks=partial(bank_of, context, settings))
         return _outcome(context, identifier, query, found)
     except EstimationCancelled as cancelled:
         if cancelled.best is not None:

@@ -16,7 +16,7 @@ from shapewright.estimation.determination.statuses import judge
 from shapewright.estimation.generator import ParameterInfo
 from shapewright.estimation.result import Combination, ParameterStatus, Ratio
 
-RESIDUAL_FLOOR: Final = 1e-4
+RESIDUAL_FLOOR: Final = 2e-4
 """Least mean residual, in half extents: a query that is cut from an instance is not fitted any better than its
 tessellation allows, however small the residual is."""
 _NO_RANGE: Final = 1e-9

@@ -11,7 +11,7 @@ from shapewright.errors import EstimationError
 
 RIDGE: Final = 1e-8
 """Added to the diagonal of the information, in squared half extents for a whole range: a direction that nothing
-determines gets a large variance instead of none. The limit of what counts as determined is 1e-4."""
+determines gets a large variance instead of none. The limit of what counts as determined is 2.5e-5."""
 N_POSE: Final = 7
 
 

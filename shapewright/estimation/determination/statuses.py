@@ -8,11 +8,11 @@ from jaxtyping import Bool, Float
 from shapewright.estimation.determination.information import Information
 from shapewright.estimation.result import ParameterStatus
 
-CHANGE: Final = 0.05
-"""Share of a range whose effect is looked at."""
+CHANGE: Final = 0.1
+"""Share of a range whose effect is looked at: from 5 % below a value to 5 % above it."""
 LEAST_EFFECT: Final = 5e-4
 """Root mean square movement of the surface, in half extents, that makes such a change count as determined."""
-WIDEST: Final = 0.15
+WIDEST: Final = 0.08
 """Half width of an interval, as a share of the range, above which the residual leaves nothing determined."""
 AT_END: Final = 1e-3
 """A value nearer to an end than this share of the range is at the end."""
@@ -30,9 +30,9 @@ def judge(
 ) -> tuple[ParameterStatus, ...]:
     """Return the status of each active continuous parameter.
 
-    A parameter is determined if a change by 5 % of its range moves the surface by more than 5e-4 of the half extent
-    with all else refitted, and if the residual leaves its interval narrow; up to scale, if that is so once the scale is
-    known; and at the end of its range, if it is either of these and the query pulls it beyond.
+    A parameter is determined if the surfaces at 5 % of its range below and above its value differ by more than 5e-4 of
+    the half extent with all else refitted, and if the residual leaves its interval narrow; up to scale, if that is so
+    once the scale is known; and at the end of its range, if it is either of these and the query pulls it beyond.
 
     Args:
         information: about the parameters in this order.

@@ -13,6 +13,7 @@ from shapewright.estimation.comparison import Comparison
 from shapewright.estimation.determination.factors import IntervalFactors
 from shapewright.estimation.fast.candidate import Candidate
 from shapewright.estimation.fast.fitted_model import FittedModel
+from shapewright.estimation.fast.following import follow_surface
 from shapewright.estimation.fast.judging import determine_fit
 from shapewright.estimation.fast.measure import fine_distance
 from shapewright.estimation.fast.search import Known, Phase, Search
@@ -86,6 +87,16 @@ class _Work:
         known = [_known(comparison) for comparison in self._comparisons]
         models = [FittedModel(model) for model in compiled]
         self.search = Search(target, models, known, lambda fraction, message: None)
+        self._followed: dict[int, Candidate] = {}
+        self.search.best["start", 0] = self._first_guess()
+
+    def _first_guess(self) -> Candidate:
+        """Return the base instance of the first model, as the paper normalizes it: an answer at once."""
+        comparison, model = self._comparisons[0], self.search.models[0]
+        values = model.settle(model.compiled.base_values())
+        pose = comparison.initial_pose(comparison.instance(values))
+        guess = Candidate(model, values, pose.rotation, pose.translation, pose.scale)
+        return fine_distance(self.search.target, guess)
 
     def answer(self, *, complete: bool) -> Estimation | None:
         """Answer with the best so far; ``None`` before there is any."""
@@ -102,7 +113,8 @@ class _Work:
             scale_known=self._comparisons[number].known_scale is not None,
             factors=IntervalFactors.shipped(),
         )
-        tried = [ModelTried(self._model(other).model, self._distances(candidate)) for other, candidate in best]
+        tried = [ModelTried(self._model(number).model, estimation.distances)]
+        tried += [ModelTried(self._model(other).model, self._distances(candidate)) for other, candidate in best[1:]]
         unseen = set(range(len(self._comparisons))) - {other for other, _ in best}
         tried += [ModelTried(self._model(other).model) for other in sorted(unseen)]
         estimation = replace(estimation, tried=tuple(tried), complete=complete and estimation.complete)
@@ -122,11 +134,13 @@ class _Work:
         )
 
     def judged(self, checkpoint: Callable[[], None]) -> Estimation:
-        """Answer with everything: where the surfaces part, and what else would fit.
+        """Answer with everything: the last fit, where the surfaces part, and what else would fit.
 
         Args:
             checkpoint: called between steps; may raise to stop.
         """
+        self._follow()
+        checkpoint()
         answer = self.answer(complete=True)
         assert answer is not None
         number = next(k for k, comparison in enumerate(self._comparisons) if comparison.generator.model is answer.model)
@@ -148,6 +162,13 @@ class _Work:
 
     # ------------------------------------------------------------------ parts of the answer
 
+    def _follow(self) -> None:
+        number, best = self._best_of_models()[0]
+        known = self.search.known[number]
+        self._followed[number] = follow_surface(
+            self.search.target, best, keeps_scale=known.scale is not None, keeps_rotation=known.keeps_rotation
+        )
+
     def _best_of_models(self) -> list[tuple[int, Candidate]]:
         """Return the number and the best candidate of each model that has one, by the distance of the fine surface."""
         search = self.search
@@ -159,7 +180,7 @@ class _Work:
         return sorted(found.items(), key=lambda item: item[1].zbuffer)
 
     def _record(self, number: int) -> Record:
-        """Return the stages of one model; a later stage is at least as good as the ones before it."""
+        """Return the stages of one model; a later one is no worse than those before it, by depth or by surface."""
         record = Record("fast", self._comparisons[number], FAST_STAGES)
         best: Candidate | None = None
         for stage in FAST_STAGES:
@@ -168,6 +189,8 @@ class _Work:
                 candidate = fine_distance(self.search.target, candidate)
                 if best is None or candidate.zbuffer < best.zbuffer:
                     best = candidate
+            if best is not None and stage == FAST_STAGES[-1]:
+                best = self._followed.get(number, best)
             if best is not None and (candidate is not None or stage in self.search.finished):
                 record.put(stage, best.values, best.pose)
             if stage in self.search.finished:

@@ -5,22 +5,17 @@ from typing import Final
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial import cKDTree
 
 from shapewright.estimation.determination.determine import Determination, continuous_columns, determine
 from shapewright.estimation.determination.factors import IntervalFactors
 from shapewright.estimation.determination.information import pose_columns
 from shapewright.estimation.fast import kernels
 from shapewright.estimation.fast.candidate import Candidate
+from shapewright.estimation.fast.deviation import POINTS, measure_deviation
 from shapewright.estimation.fast.fitted_model import FINE
-from shapewright.estimation.fast.least_squares import closest_places
 from shapewright.estimation.fast.target import Target
 
-POINTS: Final = 2000
 _DIFFERENCE: Final = 1e-4
-_FAR: Final = 0.3
-_NEIGHBORS: Final = 16
-"""Points over which residuals are averaged before their size is taken."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +25,7 @@ class Sensitivity:
     Attributes:
         jacobian: (N, A + 7) movement along the normals by x of each active measure, then by the pose.
         gradient: (A,) of half the mean squared residual by x.
-        mean_residual: mean size of the local mean of the residuals, in half extents. Noise of single points averages
-            out in it as it does in the fit; what remains is what the model cannot follow.
+        mean_residual: the systematic residual, in half extents; see :class:`Deviation`.
     """
 
     jacobian: Float[np.ndarray, "N C"]
@@ -62,14 +56,11 @@ def measure_sensitivity(target: Target, candidate: Candidate) -> Sensitivity | N
     slopes = ((moves[:, 1:] - moves[:, :1]) * own).sum(axis=2)
     with np.errstate(divide="ignore", invalid="ignore"):
         slopes = np.where(differences != 0, slopes / differences, 0.0)
-    offsets = placed - closest_places(target, placed, turned)
-    along = (offsets * turned).sum(axis=1)
-    near = np.asarray(cKDTree(placed).query(placed, k=_NEIGHBORS)[1])
-    systematic = np.abs(along[near].mean(axis=1))
+    deviation = measure_deviation(target, placed, turned)
     return Sensitivity(
         np.column_stack([slopes, pose_columns(placed, turned)]),
-        slopes.T @ along / POINTS,
-        float(np.minimum(systematic, _FAR).mean()),
+        slopes.T @ deviation.along / POINTS,
+        deviation.systematic,
     )
 
 

@@ -7,6 +7,7 @@ from typing import Final, Literal
 import numpy as np
 from jaxtyping import Float
 
+from shapewright.errors import EstimationError
 from shapewright.estimation.fast.branches import other_choices, other_poses
 from shapewright.estimation.fast.candidate import Candidate
 from shapewright.estimation.fast.fitted_model import COARSE, FINE, FittedModel
@@ -145,6 +146,8 @@ class Search:
             if group:
                 self._keep("start", outline_distance(self.target, group[0]))
         everything = sorted((one for group in groups for one in group), key=lambda one: one.misfit)
+        if not everything:
+            raise EstimationError("no instance of the models has an area", where="models")
         candidates = spread(everything, STARTS, STARTS_OF_EACH)
         self.finished.add("start")
         return candidates

@@ -5,6 +5,7 @@ import { ApiError, isAbort } from "./problem";
 import type { paths } from "./schema";
 import type {
   Accepted,
+  Axis,
   Classification,
   Classifier,
   Collection,
@@ -16,6 +17,7 @@ import type {
   Model,
   Page,
   Retrieval,
+  Unit,
 } from "./types";
 
 export const PAGE_SIZE = 100;
@@ -191,13 +193,15 @@ export function createApi(baseUrl: string, fetcher?: (request: Request) => Promi
     async estimate(input: {
       meshId: string;
       target: { modelId: string } | { className: string };
-      samples: number;
+      /** What is known of the file: the unit of its coordinates, and the axis that points up. */
+      units: Unit | null;
+      up: Axis | null;
     }): Promise<Accepted> {
       const { target } = input;
       const named = "modelId" in target ? { model_id: target.modelId } : { class_name: target.className };
       return body(
         http.POST("/v1/estimations", {
-          body: { mesh_id: input.meshId, ...named, settings: { samples: input.samples } },
+          body: { mesh_id: input.meshId, ...named, units: input.units, up: input.up },
         }),
       );
     },

@@ -14,6 +14,7 @@ export const keys = {
   meshes: ["meshes"],
   mesh: (id: string) => ["mesh", id],
   glb: (url: string) => ["glb", url],
+  instance: (modelId: string, values: Record<string, number>) => ["instance", modelId, values],
   classifiers: ["classifiers"],
   classifications: ["classifications"],
   estimations: ["estimations"],
@@ -66,6 +67,17 @@ export function useGlb(url: string | null) {
     queryKey: keys.glb(url ?? ""),
     queryFn: ({ signal }) => api.fetchGlb(url ?? "", signal),
     enabled: url !== null,
+    staleTime: Infinity,
+    gcTime: 60_000,
+  });
+}
+
+/** The mesh of a model with these values, in the model's own coordinates. */
+export function useInstanceGlb(asked: { modelId: string; values: Record<string, number> } | null) {
+  return useQuery({
+    queryKey: keys.instance(asked?.modelId ?? "", asked?.values ?? {}),
+    queryFn: async ({ signal }) => (await api.createInstance(asked!.modelId, { values: asked!.values }, signal)).glb,
+    enabled: asked !== null,
     staleTime: Infinity,
     gcTime: 60_000,
   });

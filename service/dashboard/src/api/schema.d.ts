@@ -409,6 +409,90 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/v1/collection-estimations": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Collection Estimations
+         * @description List the estimations of many meshes, newest first.
+         */
+        get: operations["list_collection_estimations"];
+        put?: never;
+        /**
+         * Create Collection Estimation
+         * @description Estimate many meshes as one job, whose parts any worker takes.
+         */
+        post: operations["create_collection_estimation"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/collection-estimations/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Collection Estimation
+         * @description Look at an estimation of many meshes.
+         */
+        get: operations["get_collection_estimation"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/collection-estimations/{id}/rows": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Estimated Meshes
+         * @description List what is found for each mesh so far, sorted by a parameter or a ratio.
+         */
+        get: operations["list_estimated_meshes"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/collection-estimations/{id}/table": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Estimated Table
+         * @description Download all rows as comma-separated values.
+         */
+        get: operations["get_estimated_table"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/v1/collections": {
         parameters: {
             query?: never;
@@ -1018,6 +1102,125 @@ export interface components {
             skipped: components["schemas"]["SkippedMeshOut"][] | null;
         };
         /**
+         * CollectionEstimationIn
+         * @description Meshes to rebuild, each with a model or with the best of a class's models.
+         */
+        CollectionEstimationIn: {
+            /**
+             * Collection Id
+             * @description A collection, indexed or not; leave it out to name meshes instead.
+             */
+            collection_id?: string | null;
+            /** Mesh Ids */
+            mesh_ids?: string[] | null;
+            /**
+             * Model Id
+             * @description A model; leave it out to name a class instead.
+             */
+            model_id?: string | null;
+            /**
+             * Class Name
+             * @description A class; for each mesh its models are all tried.
+             */
+            class_name?: string | null;
+            /**
+             * Units
+             * @description Unit of the meshes' coordinates: lengths come in it, and the scale of the fits is known.
+             */
+            units?: ("mm" | "cm" | "m" | "in") | null;
+            /**
+             * Up
+             * @description The axis of the meshes' files that points up.
+             */
+            up?: ("+x" | "-x" | "+y" | "-y" | "+z" | "-z") | null;
+            settings?: components["schemas"]["EstimationSettingsIn"];
+        };
+        /**
+         * CollectionEstimationOut
+         * @description An estimation of many meshes, asked for or done.
+         */
+        CollectionEstimationOut: {
+            /** Id */
+            id: string;
+            state: components["schemas"]["JobState"];
+            /**
+             * Collection Id
+             * @description The collection that was asked for; null if meshes were.
+             */
+            collection_id: string | null;
+            /** Mesh Count */
+            mesh_count: number;
+            /**
+             * Done Count
+             * @description Meshes that have a row; they keep it if the job is cancelled.
+             */
+            done_count: number;
+            /**
+             * Failed Count
+             * @description Those among them that could not be estimated.
+             */
+            failed_count: number;
+            /**
+             * Model Id
+             * @description The model that was asked for; null if a class was.
+             */
+            model_id: string | null;
+            /**
+             * Class Name
+             * @description The class that was asked for; null if a model was.
+             */
+            class_name: string | null;
+            /**
+             * Model Ids
+             * @description The models that are tried.
+             */
+            model_ids: string[];
+            /**
+             * Units
+             * @description Unit of the meshes' coordinates, if it was given.
+             */
+            units: string | null;
+            /**
+             * Up
+             * @description Axis of the meshes' files that points up, if it was given.
+             */
+            up: string | null;
+            /** Settings */
+            settings: {
+                [key: string]: unknown;
+            };
+            /**
+             * Rows Url
+             * @description What was found for each mesh, in any order.
+             */
+            rows_url: string;
+            /**
+             * Table Url
+             * @description The same as comma-separated values, a column for each parameter.
+             */
+            table_url: string;
+            /** Job Id */
+            job_id: string;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+        };
+        /**
+         * CollectionEstimationPageOut
+         * @description A page of estimations of many meshes.
+         */
+        CollectionEstimationPageOut: {
+            /** Items */
+            items: components["schemas"]["CollectionEstimationOut"][];
+            /**
+             * Next Cursor
+             * @description Give it as `cursor` to read on; null on the last page.
+             */
+            next_cursor: string | null;
+        };
+        /**
          * CollectionIn
          * @description Meshes to index.
          */
@@ -1126,6 +1329,47 @@ export interface components {
             zbuffer: number | null;
             /** Zbuffer Raw */
             zbuffer_raw: number | null;
+        };
+        /**
+         * EstimatedMeshOut
+         * @description The row of a mesh: its answer, or why there is none.
+         */
+        EstimatedMeshOut: {
+            /**
+             * Position
+             * @description Number of the mesh in what was asked for, from 0.
+             */
+            position: number;
+            /** Mesh Id */
+            mesh_id: string;
+            /** File Name */
+            file_name: string;
+            /**
+             * Sorted By
+             * @description The value that the rows are sorted by; null comes last.
+             */
+            sorted_by: number | null;
+            answer: components["schemas"]["MeshAnswerOut"] | null;
+            /**
+             * Error
+             * @description Why there is no answer.
+             */
+            error: string | null;
+            /** Seconds */
+            seconds: number | null;
+        };
+        /**
+         * EstimatedMeshPageOut
+         * @description A page of rows, in the order that was asked for.
+         */
+        EstimatedMeshPageOut: {
+            /** Items */
+            items: components["schemas"]["EstimatedMeshOut"][];
+            /**
+             * Next Cursor
+             * @description Give it as `cursor` to read on; null on the last page.
+             */
+            next_cursor: string | null;
         };
         /**
          * EstimationIn
@@ -1427,7 +1671,7 @@ export interface components {
          * @description What a job does.
          * @enum {string}
          */
-        JobKind: "train_classifier" | "describe_variations" | "classify" | "estimate" | "render_thumbnail" | "index_collection" | "retrieve";
+        JobKind: "train_classifier" | "describe_variations" | "classify" | "estimate" | "estimate_collection" | "estimate_meshes" | "render_thumbnail" | "index_collection" | "retrieve";
         /**
          * JobOut
          * @description A piece of long work, as its row says.
@@ -1523,6 +1767,37 @@ export interface components {
             offset: number;
             /** Factor */
             factor: number;
+        };
+        /**
+         * MeshAnswerOut
+         * @description What was found for a mesh.
+         */
+        MeshAnswerOut: {
+            /**
+             * Estimator
+             * @description Which estimator found it.
+             */
+            estimator: string;
+            /** @description The model that fits best. */
+            model: components["schemas"]["FoundModelOut"];
+            /**
+             * Layer
+             * @enum {integer}
+             */
+            layer: 1 | 2 | 3;
+            /** Complete */
+            complete: boolean;
+            /**
+             * Values
+             * @description x in the order of the model's parameters.
+             */
+            values: number[];
+            /** Parameters */
+            parameters: components["schemas"]["ParameterEstimateOut"][];
+            pose: components["schemas"]["PoseOut"];
+            distances: components["schemas"]["DistancesOut"];
+            /** Ratios */
+            ratios: components["schemas"]["RatioOut"][];
         };
         /**
          * MeshOut
@@ -3515,6 +3790,243 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description There is no such thing. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    list_collection_estimations: {
+        parameters: {
+            query?: {
+                /** @description Most items of a page. */
+                limit?: number;
+                /** @description `next_cursor` of the page before; none for the first page. */
+                cursor?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CollectionEstimationPageOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    create_collection_estimation: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CollectionEstimationIn"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AcceptedOut"];
+                };
+            };
+            /** @description The body is too large. */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The body is of a type that is not taken. */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description A store does not answer. */
+            503: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description There is no space left; nothing was kept. */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    get_collection_estimation: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CollectionEstimationOut"];
+                };
+            };
+            /** @description There is no such thing. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    list_estimated_meshes: {
+        parameters: {
+            query?: {
+                /** @description A parameter, a distance, or a ratio of two: `stem_length`, `zbuffer`, `stem_length/bowl_depth`. Without it rows come in the order of the meshes. */
+                sort?: string | null;
+                /** @description The largest first; rows without the value come last anyway. */
+                descending?: boolean;
+                /** @description Most items of a page. */
+                limit?: number;
+                /** @description `next_cursor` of the page before; none for the first page. */
+                cursor?: string | null;
+            };
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["EstimatedMeshPageOut"];
+                };
+            };
+            /** @description There is no such thing. */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+            /** @description The request is not valid; `where` says the place. */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
+                };
+            };
+        };
+    };
+    get_estimated_table: {
+        parameters: {
+            query?: {
+                /** @description A parameter, a distance, or a ratio of two: `stem_length`, `zbuffer`, `stem_length/bowl_depth`. Without it rows come in the order of the meshes. */
+                sort?: string | null;
+                /** @description The largest first; rows without the value come last anyway. */
+                descending?: boolean;
+            };
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description One line a mesh: its file, model, distances, and each parameter by name with the ends of its 90 % interval, its status and its unit. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
             };
             /** @description There is no such thing. */
             404: {

@@ -13,9 +13,9 @@ import { CollectionInspector } from "./CollectionInspector";
 import { CollectionList } from "./CollectionList";
 import { ContactSheet } from "./ContactSheet";
 import { DropTarget } from "./DropTarget";
+import { FitLegend, VIEW_TITLES } from "./FitLegend";
 import { Header } from "./Header";
 import { JobList } from "./JobList";
-import { Legend } from "./Legend";
 import { MeshInspector } from "./MeshInspector";
 import { MeshList } from "./MeshList";
 import { ModelInspector } from "./ModelInspector";
@@ -41,6 +41,8 @@ export function App() {
   const modelMissing = linkedModel !== null && models.isSuccess && model === null;
   const modelSession = useModelSession(model, route.kind === "model" ? route.values : undefined);
   const meshSession = useMeshSession(route);
+  const { fitView } = meshSession;
+  const residuals = meshSession.estimation?.result?.verdict?.residuals ?? null;
   const showsMesh = route.kind === "mesh" || route.kind === "estimation";
   const collectionSession = useCollectionSession(route);
   const showsCollection = route.kind === "collection" || route.kind === "retrieval";
@@ -63,14 +65,13 @@ export function App() {
   const stage = showsMesh
     ? {
         title: meshSession.mesh?.file_name ?? "Mesh",
-        subtitle: meshSession.legend.length > 0 ? "Query and fitted model, overlaid" : "Query",
-        layers: meshSession.layers,
+        subtitle: fitView.hasFit ? VIEW_TITLES[fitView.view] : "Query",
+        layers: fitView.layers,
         kind: "mesh" as const,
         fittedUp: meshSession.fittedUp,
         busy: meshSession.busy,
         error: meshSession.error,
-        legend:
-          meshSession.legend.length > 0 ? <Legend entries={meshSession.legend} onChange={meshSession.adjust} /> : null,
+        legend: fitView.hasFit ? <FitLegend {...fitView} residuals={residuals} /> : null,
       }
     : {
         title: model ? humanize(model.name) : "Shapewright",
@@ -158,6 +159,8 @@ export function App() {
               foundClass={meshSession.foundClass}
               estimation={meshSession.estimation}
               estimations={meshSession.estimations}
+              answer={fitView.answer}
+              onAnswer={fitView.setAnswer}
             />
           ) : meshSession.error ? (
             <Problem error={meshSession.error} />

@@ -1,7 +1,7 @@
 import { useState } from "react";
 
 import { useEstimate, useModels } from "../api/queries";
-import type { Estimation, Model } from "../api/types";
+import type { Axis, Estimation, Model, Unit } from "../api/types";
 import { useJob } from "../hooks/useJob";
 import { navigate } from "../hooks/useRoute";
 import { byClass, newestVersions } from "../lib/classes";
@@ -19,33 +19,36 @@ interface EstimationPanelProps {
   estimation: Estimation | undefined;
   /** All estimations of this mesh, newest first. */
   estimations: Estimation[];
+  /** Which of its answers is shown: 0 is the best one. */
+  answer: number;
+  onAnswer: (answer: number) => void;
 }
 
-const DEFAULT_SAMPLES = 1000;
-const MOST_SAMPLES = 100_000;
+const UNITS: Unit[] = ["mm", "cm", "m", "in"];
+const AXES: Axis[] = ["+x", "-x", "+y", "-y", "+z", "-z"];
 
 /** Rebuild the mesh with a model or with all of a class: choose, start, follow, read the answer. */
-export function EstimationPanel({ meshId, foundClass, estimation, estimations }: EstimationPanelProps) {
+export function EstimationPanel(props: EstimationPanelProps) {
+  const { meshId, foundClass, estimation, estimations, answer, onAnswer } = props;
   const models = useModels();
   const estimate = useEstimate();
   const [chosen, setChosen] = useState<string | null>(null);
-  const [samples, setSamples] = useState(String(DEFAULT_SAMPLES));
+  const [units, setUnits] = useState<Unit | "">("");
+  const [up, setUp] = useState<Axis | "">("");
 
   const live = useJob(estimation && estimation.state !== "succeeded" ? estimation.job_id : null);
   const [again, setAgain] = useState(false);
   const showForm = estimation === undefined || again;
   const classes = byClass(models.data);
   const target = chosen ?? defaultTarget(classes, foundClass);
-  const sampleCount = Number(samples);
-  const samplesValid = Number.isInteger(sampleCount) && sampleCount >= 1 && sampleCount <= MOST_SAMPLES;
   const modelOf = (id: string | null) => models.data?.find((model) => model.id === id);
 
   const found = (className: string) => (className === foundClass ? " (most probable)" : "");
 
   const start = () => {
-    if (target === null || !samplesValid) return;
+    if (target === null) return;
     estimate.mutate(
-      { meshId, target: readTarget(target), samples: sampleCount },
+      { meshId, target: readTarget(target), units: units || null, up: up || null },
       {
         onSuccess: (accepted) => {
           setAgain(false);
@@ -76,7 +79,7 @@ export function EstimationPanel({ meshId, foundClass, estimation, estimations }:
           }}
         >
           <div className="field-columns">
-            <div className="field">
+            <div className="field field-wide">
               <label htmlFor="model">Model</label>
               <select
                 id="model"
@@ -104,27 +107,29 @@ export function EstimationPanel({ meshId, foundClass, estimation, estimations }:
               </select>
             </div>
             <div className="field">
-              <label htmlFor="samples">Samples</label>
-              <input
-                id="samples"
-                type="number"
-                min={1}
-                max={MOST_SAMPLES}
-                step={1}
-                value={samples}
-                required
-                aria-describedby="samples-hint"
-                onChange={(event) => setSamples(event.target.value)}
-              />
+              <label htmlFor="units">Unit of the file</label>
+              <select id="units" value={units} onChange={(event) => setUnits(event.target.value as Unit | "")}>
+                <option value="">Unknown</option>
+                {UNITS.map((unit) => (
+                  <option key={unit}>{unit}</option>
+                ))}
+              </select>
+            </div>
+            <div className="field">
+              <label htmlFor="up">What points up</label>
+              <select id="up" value={up} onChange={(event) => setUp(event.target.value as Axis | "")}>
+                <option value="">Unknown</option>
+                {AXES.map((axis) => (
+                  <option key={axis}>{axis}</option>
+                ))}
+              </select>
             </div>
           </div>
-          <p className="hint" id="samples-hint">
-            Random variations the search starts from. More take longer and miss less.
-          </p>
+          <p className="hint">Without the unit of the file only proportions are certain, not lengths.</p>
           <button
             type="submit"
             className="button"
-            disabled={target === null || !samplesValid || estimate.isPending}
+            disabled={target === null || estimate.isPending}
           >
             {estimate.isPending ? "Starting…" : "Estimate parameters"}
           </button>
@@ -135,7 +140,14 @@ export function EstimationPanel({ meshId, foundClass, estimation, estimations }:
       {estimation?.state === "cancelled" && !estimation.result && (
         <p className="muted">The estimation was cancelled before it had found anything.</p>
       )}
-      {estimation && <EstimationResult estimation={estimation} model={modelOf(estimation.model_id)} />}
+      {estimation && (
+        <EstimationResult
+          estimation={estimation}
+          models={models.data ?? []}
+          answer={answer}
+          onAnswer={onAnswer}
+        />
+      )}
       {estimations.length > 1 && (
         <div className="field">
           <label htmlFor="estimation">Estimations of this mesh</label>

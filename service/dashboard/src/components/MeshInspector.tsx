@@ -10,11 +10,14 @@ interface MeshInspectorProps {
   foundClass: string | null;
   estimation: Estimation | undefined;
   estimations: Estimation[];
+  /** Which of the estimation's answers is shown: 0 is the best one. */
+  answer: number;
+  onAnswer: (answer: number) => void;
 }
 
 /** What is known about an unknown mesh, and the two questions that can be asked about it. */
 export function MeshInspector(props: MeshInspectorProps) {
-  const { mesh, classifierId, onClassifier, foundClass, estimation, estimations } = props;
+  const { mesh, classifierId, onClassifier, foundClass, estimation, estimations, answer, onAnswer } = props;
   return (
     <section className="inspector" aria-label="Mesh">
       <div className="inspector-head">
@@ -41,6 +44,8 @@ export function MeshInspector(props: MeshInspectorProps) {
         foundClass={foundClass}
         estimation={estimation}
         estimations={estimations}
+        answer={answer}
+        onAnswer={onAnswer}
       />
     </section>
   );

@@ -1,18 +1,11 @@
-import { useCallback, useMemo, useState } from "react";
+import { useMemo, useState } from "react";
 
 import { useClassifications, useClassifiers, useEstimation, useEstimations, useGlb, useMesh } from "../api/queries";
 import type { Route } from "../lib/route";
 import { newestOf } from "../components/ClassificationPanel";
 import { usableClassifiers } from "../components/ClassifierPicker";
-import type { LegendEntry } from "../components/Legend";
-import type { Layer } from "../three/layers";
 import { modelUp } from "../three/up";
-
-type Look = Record<string, { visible: boolean; opacity: number }>;
-
-const FIRST_LOOK: Look = { query: { visible: true, opacity: 1 }, fit: { visible: true, opacity: 1 } };
-/** With a fit beside it the query becomes a veil, so that both can be seen. */
-const OVERLAID_QUERY_OPACITY = 0.4;
+import { useFitView } from "./useFitView";
 
 /** The selected mesh, its classification, and the estimation laid over it. */
 export function useMeshSession(route: Route) {
@@ -43,66 +36,22 @@ export function useMeshSession(route: Route) {
   const estimation = estimationId === null ? estimations[0] : linked.data;
 
   const queryGlb = useGlb(mesh.data?.content_url ?? null);
-  const fitUrl = estimation?.result ? (estimation.mesh_url ?? null) : null;
-  const fitGlb = useGlb(fitUrl);
-  const hasFit = fitUrl !== null;
+  const fitView = useFitView(meshId, queryGlb.data, estimation);
 
-  const [look, setLook] = useState<Look>(FIRST_LOOK);
-  const [touched, setTouched] = useState(false);
-  const adjust = useCallback((id: string, change: Partial<Pick<LegendEntry, "visible" | "opacity">>) => {
-    if (change.opacity !== undefined && id === "query") setTouched(true);
-    setLook((before) => ({ ...before, [id]: { ...before[id]!, ...change } }));
-  }, []);
-
-  const queryOpacity = hasFit && !touched ? OVERLAID_QUERY_OPACITY : look["query"]!.opacity;
-  const queryVisible = look["query"]!.visible;
-  const fitLook = look["fit"]!;
-  const layers = useMemo<Layer[]>(() => {
-    if (meshId === null) return [];
-    const query: Layer = {
-      id: "query",
-      label: "Query",
-      tone: "query",
-      glb: queryGlb.data,
-      subject: `mesh ${meshId}`,
-      visible: queryVisible,
-      opacity: queryOpacity,
-    };
-    if (!hasFit) return [query];
-    const fit: Layer = {
-      id: `fit ${estimation?.id}`,
-      label: "Fitted model",
-      tone: "fit",
-      glb: fitGlb.data,
-      subject: `estimation ${estimation?.id}`,
-      ...fitLook,
-    };
-    return [query, fit];
-  }, [meshId, queryGlb.data, fitGlb.data, hasFit, estimation?.id, queryVisible, queryOpacity, fitLook]);
-
-  const rotation = hasFit ? estimation?.result?.pose.rotation : undefined;
+  const rotation = fitView.hasFit ? estimation?.result?.pose.rotation : undefined;
   const fittedUp = useMemo(() => (rotation ? modelUp(rotation) : null), [rotation]);
-
-  const legend: LegendEntry[] = hasFit
-    ? [
-        { id: "query", label: "Query", tone: "query", visible: queryVisible, opacity: queryOpacity },
-        { id: "fit", label: "Fitted model", tone: "fit", ...fitLook },
-      ]
-    : [];
 
   return {
     mesh: mesh.data,
     meshId,
-    error: linked.error ?? mesh.error ?? queryGlb.error ?? fitGlb.error,
-    busy: queryGlb.isFetching || fitGlb.isFetching,
+    error: linked.error ?? mesh.error ?? queryGlb.error ?? fitView.error,
+    busy: queryGlb.isFetching || fitView.busy,
     foundClass: classification?.result?.class_name ?? null,
     classifierId,
     setClassifier: setChosen,
     estimation,
     estimations,
-    layers,
+    fitView,
     fittedUp,
-    legend,
-    adjust,
   };
 }

@@ -81,6 +81,8 @@ const KINDS: Record<JobKind, string> = {
   describe_variations: "Draw variations",
   classify: "Classify",
   estimate: "Estimate",
+  estimate_collection: "Estimate meshes",
+  estimate_meshes: "Estimate some meshes",
   render_thumbnail: "Draw thumbnail",
   index_collection: "Index meshes",
   retrieve: "Find meshes",

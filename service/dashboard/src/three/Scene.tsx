@@ -7,7 +7,7 @@ import type { DirectionalLight } from "three";
 
 import { CameraRig } from "./CameraRig";
 import type { CameraCommands } from "./CameraRig";
-import type { Layer } from "./layers";
+import type { Layer, Placement } from "./layers";
 import type { Vec3 } from "./up";
 import type { Palette } from "./palette";
 import { Surface } from "./Surface";
@@ -129,18 +129,30 @@ interface LayerSurfaceProps {
 }
 
 function LayerSurface({ layer, palette, showEdges, onDecoded, onError }: LayerSurfaceProps) {
-  const { id, glb, subject } = layer;
-  const decoded = useGeometry(glb, subject, onError);
+  const { id, glb, subject, coloredNode, pose } = layer;
+  const decoded = useGeometry(glb, subject, onError, coloredNode);
+  const matrix = useMemo(() => placement(pose), [pose]);
   useEffect(() => onDecoded(id, decoded), [id, decoded, onDecoded]);
   useEffect(() => () => onDecoded(id, null), [id, onDecoded]);
   if (!decoded || !layer.visible || layer.opacity <= 0) return null;
   return (
-    <Surface
-      geometry={decoded.geometry}
-      color={palette.tones[layer.tone]}
-      edgeColor={palette.edge}
-      opacity={layer.opacity}
-      showEdges={showEdges}
-    />
+    <group matrix={matrix} matrixAutoUpdate={false}>
+      <Surface
+        geometry={decoded.geometry}
+        color={coloredNode === undefined ? palette.tones[layer.tone] : null}
+        edgeColor={palette.edge}
+        opacity={layer.opacity}
+        showEdges={showEdges}
+      />
+    </group>
   );
+}
+
+function placement(pose: Placement | undefined): Matrix4 {
+  const matrix = new Matrix4();
+  if (!pose) return matrix;
+  const { rotation, translation, scale } = pose;
+  const row = (axis: number) => [...rotation[axis]!.map((entry) => entry * scale), translation[axis]!];
+  const [a, b, c] = [row(0), row(1), row(2)] as [number[], number[], number[]];
+  return matrix.set(a[0]!, a[1]!, a[2]!, a[3]!, b[0]!, b[1]!, b[2]!, b[3]!, c[0]!, c[1]!, c[2]!, c[3]!, 0, 0, 0, 1);
 }

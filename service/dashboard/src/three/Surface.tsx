@@ -5,7 +5,8 @@ import type { BufferGeometry } from "three";
 
 interface SurfaceProps {
   geometry: BufferGeometry;
-  color: string;
+  /** `null` draws the colors of the vertices. */
+  color: string | null;
   edgeColor: string;
   opacity: number;
   showEdges: boolean;
@@ -30,8 +31,9 @@ export function Surface({ geometry, color, edgeColor, opacity, showEdges }: Surf
       )}
       <mesh geometry={geometry} renderOrder={order + 1}>
         <meshStandardMaterial
-          key={seeThrough ? "see-through" : "solid"}
-          color={color}
+          key={`${seeThrough ? "see-through" : "solid"} ${color === null ? "colored" : "plain"}`}
+          color={color ?? "#ffffff"}
+          vertexColors={color === null}
           roughness={0.72}
           metalness={0}
           side={DoubleSide}

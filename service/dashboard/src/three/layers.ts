@@ -13,4 +13,15 @@ export interface Layer {
   visible: boolean;
   /** 0 to 1. */
   opacity: number;
+  /** Draw this node of the file alone, in its own colors of vertices. */
+  coloredNode?: string;
+  /** Where the mesh stands, if not in the coordinates of the file that is looked at. */
+  pose?: Placement;
+}
+
+/** `scale * rotation @ point + translation`; the rotation row by row. */
+export interface Placement {
+  rotation: readonly (readonly number[])[];
+  translation: readonly number[];
+  scale: number;
 }

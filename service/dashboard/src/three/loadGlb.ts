@@ -6,16 +6,24 @@ import { creasedNormals } from "./creasedNormals";
 
 const loader = new GLTFLoader();
 
-/** All meshes of the file in one geometry, in the file's own coordinates. */
-export async function loadGlb(data: ArrayBuffer): Promise<BufferGeometry> {
+interface Part {
+  positions: Float32Array;
+  normals: Float32Array;
+  colors: Float32Array | null;
+}
+
+/** All meshes of the file, or the colored ones of one node, in one geometry, in the file's own coordinates. */
+export async function loadGlb(data: ArrayBuffer, coloredNode?: string): Promise<BufferGeometry> {
   const gltf = await loader.parseAsync(data, "");
-  const parts: { positions: Float32Array; normals: Float32Array }[] = [];
+  const parts: Part[] = [];
   gltf.scene.updateMatrixWorld(true);
   gltf.scene.traverse((node) => {
-    if (!(node instanceof Mesh)) return;
+    if (!(node instanceof Mesh) || (coloredNode !== undefined && node.name !== coloredNode)) return;
     const source = node.geometry as BufferGeometry;
     const placed = source.getAttribute("position").clone().applyMatrix4(node.matrixWorld);
-    parts.push(creasedNormals(placed.array, source.getIndex()?.array ?? null));
+    const index = source.getIndex()?.array ?? null;
+    const colors = coloredNode === undefined ? null : cornerColors(source, index);
+    parts.push({ ...creasedNormals(placed.array, index), colors });
     source.dispose();
   });
   if (parts.length === 0) throw new Error("The file holds no mesh.");
@@ -23,9 +31,25 @@ export async function loadGlb(data: ArrayBuffer): Promise<BufferGeometry> {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(join(parts.map((part) => part.positions)), 3));
   geometry.setAttribute("normal", new BufferAttribute(join(parts.map((part) => part.normals)), 3));
+  const colors = parts.flatMap((part) => part.colors ?? []);
+  if (colors.length > 0) geometry.setAttribute("color", new BufferAttribute(join(colors), 3));
   geometry.computeBoundingBox();
   geometry.computeBoundingSphere();
   return geometry;
+}
+
+/** (F * 3, 3) red, green, blue, one a corner, flattened. */
+function cornerColors(source: BufferGeometry, index: ArrayLike<number> | null): Float32Array {
+  const colors = source.getAttribute("color");
+  const count = index?.length ?? colors.count;
+  const corners = new Float32Array(count * 3);
+  for (let corner = 0; corner < count; corner++) {
+    const vertex = index ? index[corner]! : corner;
+    corners[corner * 3] = colors.getX(vertex);
+    corners[corner * 3 + 1] = colors.getY(vertex);
+    corners[corner * 3 + 2] = colors.getZ(vertex);
+  }
+  return corners;
 }
 
 function join(arrays: Float32Array[]): Float32Array {

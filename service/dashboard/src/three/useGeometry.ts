@@ -13,13 +13,14 @@ export function useGeometry(
   glb: ArrayBuffer | undefined,
   subject: string,
   onError: (error: unknown) => void,
+  coloredNode?: string,
 ): Decoded | null {
   const [decoded, setDecoded] = useState<Decoded | null>(null);
 
   useEffect(() => {
     if (glb === undefined) return;
     let dropped = false;
-    loadGlb(glb).then(
+    loadGlb(glb, coloredNode).then(
       (geometry) => (dropped ? geometry.dispose() : setDecoded({ geometry, subject })),
       (error: unknown) => {
         if (!dropped) onError(error);
@@ -28,7 +29,7 @@ export function useGeometry(
     return () => {
       dropped = true;
     };
-  }, [glb, subject, onError]);
+  }, [glb, subject, onError, coloredNode]);
 
   useEffect(() => () => decoded?.geometry.dispose(), [decoded]);
   return decoded;
