@@ -118,20 +118,25 @@ def measure_residuals(
     if regions is not None and (regions.min() < 0 or regions.max() >= len(region_names)):
         raise EstimationError(f"expected regions from 0 to {len(region_names) - 1}", where="regions")
 
+    def go_on() -> None:
+        if checkpoint is not None:
+            checkpoint()
+
     def distances(to: TriangleDistance, points: Float[np.ndarray, "N 3"]) -> Float[np.ndarray, " N"]:
         found = np.empty(len(points))
         for first in range(0, len(points), _PIECE):
-            if checkpoint is not None:
-                checkpoint()
+            go_on()
             found[first : first + _PIECE] = to(points[first : first + _PIECE])
         return found
 
     normal = without_dust(query).normalized()
     asked, posed = (mesh.transformed(np.eye(3), normal.translation, normal.scale) for mesh in (query, fit))
+    go_on()
     query_points, _ = even_points(asked, SAMPLES)
     fit_points, faces = even_points(posed, SAMPLES)
     to_fit = TriangleDistance(posed)
     of_query, query_to_fit = distances(to_fit, query_points), distances(to_fit, asked.vertices)
+    go_on()
     to_query = TriangleDistance(asked)
     of_fit, at_fit = distances(to_query, fit_points), distances(to_query, posed.vertices)
     by_part: tuple[PartResidual, ...] = ()

@@ -47,14 +47,16 @@ def test_an_instance_without_area_has_no_samples(chair):
     assert chair.samples(collapsed, 100, FINE, 0.5) is None
 
 
-def test_the_outline_is_the_fine_surface_at_the_vertices_of_the_coarse_one():
+def test_small_models_are_drawn_as_they_are_and_large_ones_with_fewer_triangles_of_the_same_shape():
+    from models_store.library.shipped import load_shipped
     from shapewright.distances.triangles import TriangleDistance
 
-    model = FittedModel(lever())
-    values = model.compiled.base_values()
-    points = model.outline @ model.control_points(values)
-    assert model.triangles[COARSE].max() < len(points)
-    assert TriangleDistance(model.compiled.instance(values, FINE))(points).max() < 1e-12
+    for compiled, drawn in ((lever(), FINE), (compile_model(load_shipped("glass_with_stem_shell")), COARSE)):
+        model, values = FittedModel(compiled), compiled.base_values()
+        points = model.outline @ model.control_points(values)
+        np.testing.assert_array_equal(model.outline_triangles, model.triangles[drawn])
+        assert model.outline_triangles.max() < len(points)
+        assert TriangleDistance(compiled.instance(values, FINE))(points).max() < 1e-12
 
 
 def test_free_columns_are_active_measures_with_room(chair):

@@ -16,7 +16,7 @@ from shapewright.mesh import TriangleMesh
 from shapewright.modeling import CompiledModel, compile_model
 from shapewright.progress import NULL_PROGRESS, CallbackProgress, Progress
 
-SMALL = EstimationSettings(surface_points=300, image_size=128)
+SMALL = EstimationSettings(surface_points=300)
 TRUE = np.array([1.3, 0.8, 1.2, 1.0])
 
 
@@ -55,10 +55,10 @@ def found(query: TriangleMesh, rivals: list[CompiledModel], reports: list[tuple[
 
 
 def assert_found(found: Estimation, values: np.ndarray, pose: Pose) -> None:
-    np.testing.assert_allclose(found.values, values, atol=0.05 * 1.5)  # 5 % of the ranges
-    assert angle_deg(found.pose.rotation, pose.rotation) < 4.0
-    assert found.pose.scale == pytest.approx(pose.scale, rel=0.06)
-    assert found.distances.zbuffer < 0.1
+    np.testing.assert_allclose(found.values, values, atol=0.02 * 1.5)  # 2 % of the ranges
+    assert angle_deg(found.pose.rotation, pose.rotation) < 1.0
+    assert found.pose.scale == pytest.approx(pose.scale, rel=0.02)
+    assert found.distances.zbuffer < 0.03
     assert found.layer == 3
     assert found.complete
 
@@ -72,8 +72,7 @@ def test_the_model_of_a_class_its_values_and_its_pose_are_found(
     assert found.model is model.model
     assert found.estimator == "fast"
     assert_found(found, TRUE, POSE)
-    extent = np.ptp(query.vertices, axis=0).max()
-    np.testing.assert_allclose(np.sort(found.mesh.bounds.ravel()), np.sort(query.bounds.ravel()), atol=0.03 * extent)
+    np.testing.assert_allclose(found.mesh.bounds, query.bounds, atol=0.03 * np.ptp(query.vertices))
     assert [one.model.name for one in found.tried] == ["lever", "sign"]
     assert all(one.distances is not None for one in found.tried)
     assert found.tried[0].distances.zbuffer == pytest.approx(found.distances.zbuffer)
@@ -205,20 +204,18 @@ def cancelling(part: str, after: int = 0) -> Progress:
     return CallbackProgress(report)
 
 
-@pytest.mark.parametrize("part", ["preparing the query", "first orientations"])
-def test_cancelled_before_there_is_anything_there_is_no_answer(
-    query: TriangleMesh, rivals: list[CompiledModel], part: str
+def test_cancelled_before_the_query_is_prepared_there_is_no_answer(
+    query: TriangleMesh, rivals: list[CompiledModel]
 ) -> None:
     with pytest.raises(EstimationCancelled) as caught:
-        run(query, rivals, cancelling(part))
+        run(query, rivals, cancelling("preparing the query"))
     assert caught.value.best is None
 
 
 @pytest.mark.parametrize(
     ("part", "after"),
-    [("first fits", 0), ("first fits", 3), ("closer fits", 1), ("options", 2), ("dense fits", 0), ("polish", 3),
-     ("judging", 0), ("judging", 1)],
-)  # fmt: skip
+    [("first orientations", 0), ("first fits", 0), ("closer fits", 1), ("options", 2), ("polish", 3), ("judging", 1)],
+)
 def test_cancelled_at_any_moment_the_best_so_far_is_the_answer(
     query: TriangleMesh, rivals: list[CompiledModel], found: Estimation, part: str, after: int
 ) -> None:
@@ -229,7 +226,7 @@ def test_cancelled_at_any_moment_the_best_so_far_is_the_answer(
     assert not best.complete
     compiled = next(one for one in rivals if one.model is best.model)
     np.testing.assert_array_equal(compiled.settle(best.values[None])[0], best.values)
-    assert best.distances.zbuffer >= found.distances.zbuffer - 1e-9
+    assert best.distances.zbuffer > 0.9 * found.distances.zbuffer
     assert len(best.tried) == len(rivals)
     expected = placed(compiled, best.values, best.pose)
     np.testing.assert_allclose(best.mesh.vertices, expected.vertices, atol=1e-9 * POSE.scale)

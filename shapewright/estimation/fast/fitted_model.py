@@ -1,6 +1,7 @@
 """A model prepared for fitting: its surface as sparse matrices, its free parameters and its options."""
 
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -11,6 +12,7 @@ from shapewright.modeling.compiled import CompiledModel
 
 COARSE, FINE = 1, 2
 """Subdivision steps of the surface: while searching, and at the end."""
+_FEW_TRIANGLES: Final = 2500
 
 
 class FittedModel:
@@ -41,8 +43,22 @@ class FittedModel:
 
     @cached_property
     def outline(self) -> sparse.csr_array:
-        """The vertices of the coarse surface, where the fine one has them: the fine shape with fewer triangles."""
-        return self.matrices[FINE][: self.matrices[COARSE].shape[0]]
+        """The vertices of the surface that is drawn while searching, as a product with those of the control mesh.
+
+        They are those of the coarse surface, at the places that the fine one gives them. Where the fine surface has
+        few triangles it is drawn itself: the chords of a coarse mesh stay far inside a round shape.
+        """
+        matrix = self.matrices[FINE]
+        return matrix if self._draws_fine else matrix[: self.matrices[COARSE].shape[0]]
+
+    @property
+    def outline_triangles(self) -> Int[np.ndarray, "F 3"]:
+        """Triangles of that surface."""
+        return self.triangles[FINE if self._draws_fine else COARSE]
+
+    @property
+    def _draws_fine(self) -> bool:
+        return len(self.triangles[FINE]) <= _FEW_TRIANGLES
 
     def settle(self, values: Float[np.ndarray, " P"]) -> Float[np.ndarray, " P"]:
         """Return one row settled."""

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from shapewright.estimation.fast import kernels
 from shapewright.estimation.fast.candidate import Candidate, Curvature
-from shapewright.estimation.fast.fitted_model import COARSE, barycentric_rows
+from shapewright.estimation.fast.fitted_model import barycentric_rows
 from shapewright.estimation.fast.measure import outline_distance
 from shapewright.estimation.fast.target import SAMPLES, Target
 
@@ -268,10 +268,10 @@ def _add_outline(
     model = candidate.model
     placed = np.ascontiguousarray(candidate.placed(model.outline @ controls[0]))
     pulls = target.outline.pulls(
-        placed, model.triangles[COARSE], effort.outline, effort.outline_weight, effort.outline_width
+        placed, model.outline_triangles, effort.outline, effort.outline_weight, effort.outline_width
     )
     if pulls is not None:
-        matrix = barycentric_rows(pulls.faces, pulls.weights, model.triangles[COARSE], model.outline)
+        matrix = barycentric_rows(pulls.faces, pulls.weights, model.outline_triangles, model.outline)
         system.add(
             candidate, target, kernels.sparse_product(matrix, controls), differences, pulls.metrics, pulls.forces
         )

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from shapewright.estimation.fast.candidate import Candidate
-from shapewright.estimation.fast.fitted_model import COARSE, FINE
+from shapewright.estimation.fast.fitted_model import FINE
 from shapewright.estimation.fast.target import Target
 
 
@@ -14,7 +14,7 @@ def outline_distance(target: Target, candidate: Candidate) -> Candidate:
     model = candidate.model
     control = model.control_points(candidate.values)
     points = np.ascontiguousarray(candidate.placed(model.outline @ control))
-    return replace(candidate, zbuffer=target.zbuffer_distance(points, model.triangles[COARSE]))
+    return replace(candidate, zbuffer=target.zbuffer_distance(points, model.outline_triangles))
 
 
 def fine_distance(target: Target, candidate: Candidate) -> Candidate:

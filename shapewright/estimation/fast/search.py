@@ -223,7 +223,7 @@ class Search:
         )
         for _ in range(_ROUNDS):
             polish.round(self._pool.check)
-            self._keep("polish", polish.best)
+            self._keep("polish", fine_distance(self.target, polish.best))
             if polish.gain < _ROUND_GAIN or polish.is_done:
                 break
         return _sorted([fine_distance(self.target, polish.best), fine_distance(self.target, candidate)])[0]
