@@ -34,9 +34,7 @@ class Deviation:
     systematic: float
 
 
-def measure_deviation(
-    target: Target, placed: Float[np.ndarray, "N 3"], normals: Float[np.ndarray, "N 3"]
-) -> Deviation:
+def measure_deviation(target: Target, placed: Float[np.ndarray, "N 3"], normals: Float[np.ndarray, "N 3"]) -> Deviation:
     """Measure samples of an instance, placed in the space of the query, with their normals there."""
     along = ((placed - closest_places(target, placed, normals)) * normals).sum(axis=1)
     near = np.asarray(cKDTree(placed).query(placed, k=[*range(1, min(_NEIGHBORS, len(placed)) + 1)])[1])
