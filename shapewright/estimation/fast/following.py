@@ -24,9 +24,9 @@ FOLLOWED: Final = 0.004
 SCATTERED: Final = 0.45
 """Share of the mean residual that is systematic, below which residuals are noise of the query: it is 0.25 where each of
 16 neighbors is off on its own, 0.36 in fits to instances with noise, 0.6 and more in fits to real meshes."""
-_SURFACES: Final = Effort(rounds=6, points=2000, steps=FINE, damping=1e-4)
-_FITS: Final = 2
-"""A fit ends as soon as samples come no nearer to each other; the values still do in a second one."""
+_MOST_DEPTH: Final = (2.0, 0.05)
+"""A fit whose z-buffer distance is larger than this factor times the former one, and this more, has lost its query."""
+_SURFACES: Final = Effort(rounds=12, points=2000, steps=FINE, damping=1e-4)
 
 
 def follow_surface(
@@ -44,12 +44,15 @@ def follow_surface(
         The new fit, with its z-buffer distance, if that is no larger, or if no residual is left but noise; else the
         answer as it was.
     """
-    found = replace(candidate, zbuffer=np.inf)
-    for _ in range(_FITS):
-        found = fit(target, found, _SURFACES, keeps_scale=keeps_scale, keeps_rotation=keeps_rotation)
+    found = fit(
+        target, replace(candidate, zbuffer=np.inf), _SURFACES, keeps_scale=keeps_scale, keeps_rotation=keeps_rotation
+    )
     found = fine_distance(target, found)
     if found.zbuffer <= candidate.zbuffer:
         return found
+    factor, more = _MOST_DEPTH
+    if found.zbuffer > factor * candidate.zbuffer + more:
+        return candidate
     left = candidate_deviation(target, found)
     follows = left is not None and left.systematic < max(EXACT, min(FOLLOWED, SCATTERED * left.mean))
     return found if follows else candidate

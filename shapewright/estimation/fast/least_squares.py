@@ -27,7 +27,10 @@ _FAR = 0.3
 _LEAST_WIDTH = 0.01
 _SAMPLED_EVERY = 3
 _GAIN, _PATIENCE = 0.003, 1
-"""A round gains if its distance falls by this share; the search ends after more rounds in a row without a gain."""
+"""A round gains if its distance falls by this share; with outlines the search ends after more rounds without a gain."""
+_SETTLED = 2e-5
+"""Root mean square move of the surface, in half extents, below which a search by surfaces alone has settled. Distances
+between samples have a floor far above what the values still gain."""
 _EXACT_SPACING = 0.005
 _ACROSS = 0.1
 """Pairs whose normals are at a right angle cost as much as so large a distance."""
@@ -38,7 +41,7 @@ class Effort:
     """How a least-squares search works.
 
     Attributes:
-        rounds: at most; fewer if two of them gained nothing.
+        rounds: at most; fewer if nothing is gained any more.
         points: samples on either side.
         steps: subdivision steps of the surface.
         neighbors: near samples among which each pair is chosen.
@@ -82,11 +85,12 @@ def fit(
         checkpoint: called once a round; may raise to stop.
 
     Returns:
-        The best round: the one of the later half with the smallest z-buffer distance if outlines pull, else the one
-        with the smallest misfit.
+        The best round: of the later half the one with the smallest z-buffer distance if outlines pull, else the last
+        one whose misfit is hardly larger than the smallest.
     """
     samples = None
     best, stale = candidate, 0
+    least = movement = np.inf
     for number in range(effort.rounds + 1):
         if checkpoint is not None:
             checkpoint()
@@ -110,9 +114,10 @@ def fit(
         matches = _match(target, candidate, effort, np.ascontiguousarray(moves[:, :3]), normals)
         if not effort.outline:
             candidate = replace(candidate, misfit=matches.misfit)
-            stale = 0 if candidate.misfit < (1.0 - _GAIN) * best.misfit or number == 0 else stale + 1
-            best = candidate if number == 0 else min(best, candidate, key=lambda one: one.misfit)
-            if number == effort.rounds or stale > _PATIENCE:
+            least = min(least, candidate.misfit)
+            if candidate.misfit <= (1.0 + _GAIN) * least:
+                best = candidate
+            if number == effort.rounds or movement < _SETTLED:
                 break
         system = _surface_system(target, candidate, effort, matches, moves, differences)
         if effort.outline:
@@ -121,6 +126,7 @@ def fit(
         free[-1] = not keeps_scale
         free[len(columns) : len(columns) + 3] = not keeps_rotation
         step = _bounded_step(candidate, effort, system, columns, lowest, highest, free)
+        movement = float(np.sqrt(max(0.0, step @ system.curvature @ step)))
         curvature = Curvature(columns, system.curvature)
         candidate = replace(candidate.moved(columns, step, target.center), curvature=curvature)
     return best
