@@ -19,7 +19,8 @@ class TriangleDistance:
 
     def __init__(self, mesh: TriangleMesh) -> None:
         corners = mesh.triangles
-        self._low, self._high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+        points = corners.reshape(-1, 3)
+        self._low, self._high = points.min(axis=0), points.max(axis=0)
         self._order = np.argsort(self._codes(corners.mean(axis=1)), kind="stable")
         self._corners = np.ascontiguousarray(corners[self._order])
         self._boxes = _tree(self._corners)
@@ -53,8 +54,9 @@ def _tree(corners: Float[np.ndarray, "F 3 3"]) -> tuple[Float[np.ndarray, "M 3"]
     starts = np.arange(0, len(corners), LEAF_FACES)
     n_leaves = 1 << max(len(starts) - 1, 1).bit_length()
     low, high = np.full((2 * n_leaves, 3), np.inf), np.full((2 * n_leaves, 3), -np.inf)
-    low[n_leaves : n_leaves + len(starts)] = np.minimum.reduceat(corners.min(axis=1), starts)
-    high[n_leaves : n_leaves + len(starts)] = np.maximum.reduceat(corners.max(axis=1), starts)
+    first, second, third = corners[:, 0], corners[:, 1], corners[:, 2]  # much faster than a reduction over three
+    low[n_leaves : n_leaves + len(starts)] = np.minimum.reduceat(np.minimum(np.minimum(first, second), third), starts)
+    high[n_leaves : n_leaves + len(starts)] = np.maximum.reduceat(np.maximum(np.maximum(first, second), third), starts)
     size = n_leaves
     while size > 1:
         half = size // 2

@@ -18,7 +18,10 @@ threshold of the surface distance."""
 SAMPLES = 6000
 """Points on each surface that shares of area, means and percentiles are taken from."""
 _PIECE: Final = 10_000
-"""Points whose distances are searched for at once."""
+_LEAST_PIECE: Final = 100
+"""Points whose distances are searched for at once; few where a mesh is large, as some search much of it."""
+_PIECE_WORK: Final = 200_000_000
+"""Points times triangles of a piece, between those limits."""
 
 
 @dataclass(frozen=True)
@@ -122,11 +125,15 @@ def measure_residuals(
         if checkpoint is not None:
             checkpoint()
 
-    def distances(to: TriangleDistance, points: Float[np.ndarray, "N 3"]) -> Float[np.ndarray, " N"]:
-        found = np.empty(len(points))
-        for first in range(0, len(points), _PIECE):
-            go_on()
-            found[first : first + _PIECE] = to(points[first : first + _PIECE])
+    def distances(mesh: TriangleMesh, *several: Float[np.ndarray, "_ 3"]) -> list[Float[np.ndarray, " _"]]:
+        go_on()
+        to = TriangleDistance(mesh)
+        piece = max(_LEAST_PIECE, min(_PIECE, _PIECE_WORK // len(mesh.faces)))
+        found = [np.empty(len(points)) for points in several]
+        for points, out in zip(several, found, strict=True):
+            for first in range(0, len(points), piece):
+                go_on()
+                out[first : first + piece] = to(points[first : first + piece])
         return found
 
     normal = without_dust(query).normalized()
@@ -134,11 +141,8 @@ def measure_residuals(
     go_on()
     query_points, _ = even_points(asked, SAMPLES)
     fit_points, faces = even_points(posed, SAMPLES)
-    to_fit = TriangleDistance(posed)
-    of_query, query_to_fit = distances(to_fit, query_points), distances(to_fit, asked.vertices)
-    go_on()
-    to_query = TriangleDistance(asked)
-    of_fit, at_fit = distances(to_query, fit_points), distances(to_query, posed.vertices)
+    of_query, query_to_fit = distances(posed, query_points, asked.vertices)
+    of_fit, at_fit = distances(asked, fit_points, posed.vertices)
     by_part: tuple[PartResidual, ...] = ()
     if regions is not None:
         of_face = regions[posed.faces[:, 0]]
