@@ -30,6 +30,7 @@ SMALL = EstimationSettings(
     model_points="vertices",
     step_sizes=(0.5, 0.15),
     alignment=AlignmentSettings(0.1, 0.06 * np.pi, 0.1),
+    estimator="reference",
 )
 TURN = Pose(rotations_24()[9], np.array([4.0, 0.0, -2.0]), 3.0)
 
@@ -120,7 +121,7 @@ def test_the_banks_of_far_models_are_let_go(query: TriangleMesh) -> None:
 
     coarse = EstimationSettings(
         samples=10, surface_points=50, image_size=16, subdivision_steps=1, step_sizes=(1.0,),
-        alignment=AlignmentSettings(0.3, 0.2 * np.pi, 0.3),
+        alignment=AlignmentSettings(0.3, 0.2 * np.pi, 0.3), estimator="reference",
     )  # fmt: skip
     estimate(query, many, coarse, banks=bank_of)
     assert len(alive) == 5

@@ -16,6 +16,7 @@ COARSE = EstimationSettings(
     model_points="vertices",
     step_sizes=(0.5, 0.1, 0.02),
     alignment=AlignmentSettings(0.05, 0.05 * np.pi, 0.05),
+    estimator="reference",
 )
 TRUTH = np.array([1.3, 0.8])
 TURN = Pose(rotations_24()[14], np.array([40.0, -3.0, 12.0]), 0.1)

@@ -27,6 +27,7 @@ SMALL = EstimationSettings(
     model_points="vertices",  # fewer, and as even: the boxes are subdivided
     step_sizes=(0.5, 0.1, 0.02),
     alignment=AlignmentSettings(0.03, 0.03 * np.pi, 0.03),
+    estimator="reference",
 )
 COARSE = EstimationSettings(  # where only the course of the work matters
     samples=60,
@@ -35,6 +36,7 @@ COARSE = EstimationSettings(  # where only the course of the work matters
     model_points="vertices",
     step_sizes=(0.5, 0.1),
     alignment=AlignmentSettings(0.08, 0.05 * np.pi, 0.08),
+    estimator="reference",
 )
 TRUTH = np.array([1.35, 0.8])
 TURN = Pose(rotations_24()[14], np.array([40.0, -3.0, 12.0]), 7.5)
