@@ -1,7 +1,7 @@
 """A compiled model: the topology once, then positions for batches of parameters."""
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -39,18 +39,14 @@ class CompiledModel:
         self._presence = self.space.flat([part.present_when for part in model.parts])
         mesh = ControlMesh()
         program = Program()
-        changes: dict[int, list[tuple[Change, int]]] = defaultdict(list)
-        for column, parameter in enumerate(model.parameters):
-            for target in parameter.targets:
-                mode = model.operations[target.operation].modes[target.mode]
-                changes[target.operation] += [(change, column) for change in mode]
+        changes = changes_of(model)
         for index, operation in enumerate(model.operations):
             try:
                 step = operation.apply(mesh)
             except ModelError as error:
                 raise ModelError(error.message, where=f"operations[{index}]") from None
             program.begin_operation()
-            step.write(program, changes[index])
+            step.write(program, changes.get(index, ()))
         self._parts = PartVertices(mesh, model.parts)
         for component in model.symmetry.apart:
             if component.id >= mesh.n_components:
@@ -235,6 +231,16 @@ class CompiledModel:
         if not np.isfinite(values).all():
             raise ParameterError("a value is not finite")
         return self.space.settle_and_hold(self._presence, values)
+
+
+def changes_of(model: ProceduralModel) -> Mapping[int, Sequence[tuple[Change, int]]]:
+    """Return what the parameters change of each operation, by its index: the changes and the parameter's column."""
+    changes: dict[int, list[tuple[Change, int]]] = defaultdict(list)
+    for column, parameter in enumerate(model.parameters):
+        for target in parameter.targets:
+            mode = model.operations[target.operation].modes[target.mode]
+            changes[target.operation] += [(change, column) for change in mode]
+    return changes
 
 
 def compile_model(model: ProceduralModel) -> CompiledModel:

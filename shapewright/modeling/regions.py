@@ -9,7 +9,7 @@ from itertools import chain, count
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from shapewright.modeling.compiled import SUBDIVISION_STEPS, CompiledModel
+from shapewright.modeling.compiled import SUBDIVISION_STEPS, CompiledModel, changes_of
 from shapewright.modeling.control_mesh import ControlMesh
 from shapewright.modeling.procedural_model import ProceduralModel
 from shapewright.modeling.program import SCRATCH, Program
@@ -63,12 +63,13 @@ def find_regions(model: ProceduralModel) -> Regions:
     """Return the regions of a valid model, its parts first."""
     mesh = ControlMesh()
     made_by: list[int] = []  # the operation of each component
+    changes = changes_of(model)
     changed: list[frozenset[int]] = []  # the components that each operation moves
     for index, operation in enumerate(model.operations):
         step = operation.apply(mesh)
         made_by += [index] * (mesh.n_components - len(made_by))
         program = Program()
-        step.write(program, ())
+        step.write(program, changes.get(index, ()))
         moved = {int(row) for instruction in program.instructions for row in instruction.targets if row < SCRATCH}
         changed.append(frozenset(mesh.component_of(vertex) for vertex in moved))
     part_of = {component.id: part.name.split(":")[0] for part in model.parts for component in part.components}

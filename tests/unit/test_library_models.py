@@ -145,7 +145,14 @@ def test_a_sword_without_curvature_is_mirrored_at_its_spine_too() -> None:
 
 
 def test_the_displayed_sizes_are_those_of_the_mesh() -> None:
-    shown = {p.name: p.base_value for name in ("table", "glass_with_stem") for p in model_of(name).parameters}
+    models = [model_of("table"), model_of("glass_with_stem")]
+    in_meters = {"m": 1.0, "cm": 0.01}
+    shown = {  # in units of the coordinates
+        p.name: p.base_value * in_meters[p.unit] / model.unit_m
+        for model in models
+        for p in model.parameters
+        if p.unit in in_meters
+    }
     table, glass = instance_points("table"), instance_points("glass_with_stem")
     assert np.ptp(table[:, 0]) == pytest.approx(shown["top_length"])
     assert np.ptp(table[:, 1]) == pytest.approx(shown["top_width"])

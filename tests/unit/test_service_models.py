@@ -38,6 +38,7 @@ def test_a_model_is_stored_once(service: LiveService) -> None:
         "label": "neck length",
         "unit": "mm",
         "base_value": 40.0,
+        "kind": "length",
         "minimum": 0.5,
         "maximum": 2.0,
         "default": 1.0,

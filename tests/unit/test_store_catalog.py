@@ -52,8 +52,8 @@ def test_the_same_model_twice_is_one_model(database: Database, clock: FakeClock)
     assert first.id == brick().digest
     assert second.parameters == [
         {
-            "name": "height", "label": "height", "unit": None, "base_value": None, "minimum": 0.3, "maximum": 2.0,
-            "default": 1.0, "options": [], "active_when": [], "limits": [],
+            "name": "height", "label": "height", "unit": None, "base_value": None, "kind": None, "minimum": 0.3,
+            "maximum": 2.0, "default": 1.0, "options": [], "active_when": [], "limits": [],
         }
     ]  # fmt: skip
     assert (second.parts, second.symmetry) == ([], {"mirrors": [], "axis": None, "order": 1})
