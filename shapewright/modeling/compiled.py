@@ -19,7 +19,7 @@ from shapewright.modeling.subdivision import Polygons
 from shapewright.modeling.surface_levels import SurfaceLevels
 
 SUBDIVISION_STEPS = 2
-"""Surface sampling uses two steps (PAPER-NOTES, section 3)."""
+"""Surface sampling uses two steps."""
 _CHUNK_BYTES = 64 * 2**20
 
 Present = Bool[np.ndarray, "B N"]

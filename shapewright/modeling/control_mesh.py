@@ -1,6 +1,6 @@
 """The topology of a control mesh: polygons of any valence whose elements keep their ids for ever.
 
-Positions are not kept here. Parameters move vertices and never change the topology (PAPER-NOTES, section 3), so the
+Positions are not kept here. Parameters move vertices and never change the topology, so the
 topology is built once and positions are evaluated for a whole batch (:mod:`shapewright.modeling.compiled`).
 """
 

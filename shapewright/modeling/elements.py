@@ -105,7 +105,7 @@ class Target:
 
     Attributes:
         elements: what moves; for an anchor, where the frame's origin is (none: the world's origin).
-        frame: ``"own"`` is the frame of the first element (PAPER-NOTES, section 3), ``"world"`` the axes of the
+        frame: ``"own"`` is the frame of the first element, ``"world"`` the axes of the
             model, an element is that element's frame.
         image: empty, or the transforms that map the operation's *first* target onto this one. Then this target
             uses the image of the first target's frame, so that a model stays symmetric whatever its parameters.

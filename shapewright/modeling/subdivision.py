@@ -1,7 +1,7 @@
 """Catmull-Clark subdivision with creases as one sparse matrix a step (Catmull, Clark 1978; DeRose et al. 1998).
 
 An edge marked sharp, or with one face only, is a crease. A vertex with one such edge is a dart (treated as smooth),
-with two a crease vertex, with three or more a corner; a vertex marked sharp is a corner too (PAPER-NOTES, section 3).
+with two a crease vertex, with three or more a corner; a vertex marked sharp is a corner too.
 """
 
 from collections import defaultdict

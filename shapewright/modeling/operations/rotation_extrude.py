@@ -21,7 +21,7 @@ from shapewright.modeling.program import Changes, Program, SlottedQuantities
 class RotationExtrude(Operation):
     """A face grows out and turns about the direction of one of its edges.
 
-    The paper names (w, l) without defining them. Our reading (PAPER-NOTES, section 3): the new face is turned by a
+    The paper names (w, l) without defining them. Our reading: the new face is turned by a
     fixed angle about the edge's direction, moved by ``length`` along the mean of the old and the new normal, and
     scaled by ``width`` across the turn, that is along the direction in the face that is perpendicular to the edge.
 
