@@ -79,8 +79,11 @@ def _narrow(value, step, first, last):
 
 @njit(cache=True, nogil=True)
 @no_type_check
-def fill(columns, rows, depths, triangles, size, front, back):
-    """Draw triangles: ``front`` keeps each pixel's smallest depth, ``back`` the smallest negated depth."""
+def fill(columns, rows, depths, triangles, size, front, back, owners):
+    """Draw triangles: ``front`` keeps each pixel's smallest depth, ``back`` the smallest negated depth.
+
+    ``owners`` keeps one of the triangles that cover the pixel, unless it is ``None``.
+    """
     half = ((size - 1) * _SUBPIXELS) >> 1  # size * subpixels is even: exact
     for f in range(triangles.shape[0]):
         a, b, c = triangles[f, 0], triangles[f, 1], triangles[f, 2]
@@ -125,6 +128,8 @@ def fill(columns, rows, depths, triangles, size, front, back):
                         single = np.float32(depth)
                         front[j, i] = min(front[j, i], single)
                         back[j, i] = min(back[j, i], -single)
+                        if owners is not None:
+                            owners[j, i] = f
                 wa += right_a
                 wb += right_b
                 wc += right_c
@@ -145,40 +150,184 @@ def draw_passes(points, triangles, frames, first, last, views):
         views[2 * k] = np.inf
         views[2 * k + 1] = np.inf
         project(points, frames[k], size, columns, rows, depths)
-        fill(columns, rows, depths, triangles, size, views[2 * k], views[2 * k + 1])
+        fill(columns, rows, depths, triangles, size, views[2 * k], views[2 * k + 1], None)
+
+
+@njit(cache=True, nogil=True)
+@no_type_check
+def _compare_pass(columns, rows, depths, bounds, triangles, query_front, query_back, query_covered, owners):
+    """Draw one projected pass and compare it: the raw sum over its two views, and the pixels that either covers."""
+    size = query_front.shape[0]
+    first_column, last_column, first_row, last_row = bounds
+    front = np.empty((size, size), dtype=np.float32)
+    back = np.empty((size, size), dtype=np.float32)
+    for j in range(first_row, last_row + 1):
+        for i in range(first_column, last_column + 1):
+            front[j, i] = np.inf
+            back[j, i] = np.inf
+            if owners is not None:
+                owners[j, i] = -1
+    fill(columns, rows, depths, triangles, size, front, back, owners)
+    both = 0
+    only_generated = 0
+    differences = 0.0
+    for j in range(first_row, last_row + 1):
+        for i in range(first_column, last_column + 1):
+            if front[j, i] < np.inf:
+                if query_front[j, i] < np.inf:
+                    both += 1
+                    differences += abs(np.float64(front[j, i]) - query_front[j, i])
+                    differences += abs(np.float64(back[j, i]) - query_back[j, i])
+                else:
+                    only_generated += 1
+    only_query = query_covered - both
+    raw = differences + 2 * (UNDERSIZE_PENALTY * only_query + OVERSIZE_PENALTY * only_generated)
+    return raw, 2.0 * (both + only_generated + only_query)
 
 
 @njit(cache=True, nogil=True)
 @no_type_check
 def compare_passes(points, triangles, frames, query_views, query_covered, first, last, sums):
     """For passes ``first`` to before ``last``: the raw sum over its two views, and the pixels that either covers."""
+    columns = np.empty(points.shape[0], dtype=np.int64)
+    rows = np.empty(points.shape[0], dtype=np.int64)
+    depths = np.empty(points.shape[0], dtype=np.float64)
     for k in range(first, last):
-        size = query_views.shape[1]
-        columns = np.empty(points.shape[0], dtype=np.int64)
-        rows = np.empty(points.shape[0], dtype=np.int64)
-        depths = np.empty(points.shape[0], dtype=np.float64)
-        front = np.empty((size, size), dtype=np.float32)
-        back = np.empty((size, size), dtype=np.float32)
-        first_column, last_column, first_row, last_row = project(points, frames[k], size, columns, rows, depths)
-        for j in range(first_row, last_row + 1):
-            for i in range(first_column, last_column + 1):
-                front[j, i] = np.inf
-                back[j, i] = np.inf
-        fill(columns, rows, depths, triangles, size, front, back)
-        query_front = query_views[2 * k]
-        query_back = query_views[2 * k + 1]
-        both = 0
-        only_generated = 0
-        differences = 0.0
-        for j in range(first_row, last_row + 1):
-            for i in range(first_column, last_column + 1):
-                if front[j, i] < np.inf:
-                    if query_front[j, i] < np.inf:
-                        both += 1
-                        differences += abs(np.float64(front[j, i]) - query_front[j, i])
-                        differences += abs(np.float64(back[j, i]) - query_back[j, i])
-                    else:
-                        only_generated += 1
-        only_query = query_covered[k] - both
-        sums[k, 0] = differences + 2 * (UNDERSIZE_PENALTY * only_query + OVERSIZE_PENALTY * only_generated)
-        sums[k, 1] = 2.0 * (both + only_generated + only_query)
+        bounds = project(points, frames[k], query_views.shape[1], columns, rows, depths)
+        sums[k, 0], sums[k, 1] = _compare_pass(
+            columns, rows, depths, bounds, triangles, query_views[2 * k], query_views[2 * k + 1], query_covered[k], None
+        )
+
+
+@njit(cache=True, nogil=True)
+@no_type_check
+def compare_and_trace(
+    points, triangles, frames, query_views, query_covered, sums, faces, weights, views, pixels, normals
+):
+    """Compare all passes as :func:`compare_passes` does, and find the triangles at the outline of what is drawn.
+
+    A covered pixel beside one that is not covered belongs to the outline. Depth does not matter: whatever covers such a
+    pixel ends there.
+
+    Args:
+        points: (V, 3).
+        triangles: (F, 3).
+        frames: (K, 3, 3), right, up and viewing direction of each pass.
+        query_views: (2 K, S, S).
+        query_covered: (K,) pixels that the query covers.
+        sums: (K, 2), filled.
+        faces, weights, views, pixels, normals: (N,), (N, 3), (N,), (N, 2), (N, 2) filled: triangle, barycentric weights
+            of the pixel's center in it, number of the pass, column and row, direction out of the outline.
+
+    Returns:
+        How many outline pixels were found; at most N.
+    """
+    size = query_views.shape[1]
+    columns = np.empty(points.shape[0], dtype=np.int64)
+    rows = np.empty(points.shape[0], dtype=np.int64)
+    depths = np.empty(points.shape[0], dtype=np.float64)
+    owners = np.empty((size, size), dtype=np.int32)
+    found = 0
+    for k in range(frames.shape[0]):
+        bounds = project(points, frames[k], size, columns, rows, depths)
+        sums[k, 0], sums[k, 1] = _compare_pass(
+            columns,
+            rows,
+            depths,
+            bounds,
+            triangles,
+            query_views[2 * k],
+            query_views[2 * k + 1],
+            query_covered[k],
+            owners,
+        )
+        found = _trace_pass(columns, rows, bounds, triangles, owners, k, found, faces, weights, views, pixels, normals)
+    return found
+
+
+@njit(cache=True, nogil=True)
+@no_type_check
+def _trace_pass(columns, rows, bounds, triangles, owners, view, found, faces, weights, views, pixels, normals):
+    """Append the outline of one drawn pass; return how many pixels there are by then."""
+    first_column, last_column, first_row, last_row = bounds
+    size = owners.shape[0]
+    half = ((size - 1) * _SUBPIXELS) >> 1
+    for j in range(max(first_row, 1), min(last_row + 1, size - 1)):
+        for i in range(max(first_column, 1), min(last_column + 1, size - 1)):
+            f = owners[j, i]
+            if f < 0 or (
+                first_column < i < last_column
+                and first_row < j < last_row
+                and owners[j, i - 1] >= 0
+                and owners[j, i + 1] >= 0
+                and owners[j - 1, i] >= 0
+                and owners[j + 1, i] >= 0
+            ):
+                continue
+            if found == faces.shape[0]:
+                return found
+            a, b, c = triangles[f, 0], triangles[f, 1], triangles[f, 2]
+            x, y = i * _SUBPIXELS - half - columns[a], j * _SUBPIXELS - half - rows[a]
+            bx, by = columns[b] - columns[a], rows[b] - rows[a]
+            cx, cy = columns[c] - columns[a], rows[c] - rows[a]
+            inverse = 1.0 / (bx * cy - by * cx)
+            wb, wc = (x * cy - y * cx) * inverse, (bx * y - by * x) * inverse
+            faces[found] = f
+            weights[found, 0], weights[found, 1], weights[found, 2] = 1.0 - wb - wc, wb, wc
+            views[found] = view
+            pixels[found, 0], pixels[found, 1] = i, j
+            outward(owners, bounds, j, i, normals[found])
+            found += 1
+    return found
+
+
+@njit(cache=True, nogil=True)
+@no_type_check
+def outward(owners, bounds, j, i, out):
+    """Direction from a covered pixel to what is not covered around it, as a unit vector (columns, rows).
+
+    Pixels outside the bounds (first and last column, first and last row) are not covered.
+    """
+    first_column, last_column, first_row, last_row = bounds
+    x, y = 0.0, 0.0
+    for dj in range(-2, 3):
+        for di in range(-2, 3):
+            jj, ii = j + dj, i + di
+            if jj < first_row or ii < first_column or jj > last_row or ii > last_column or owners[jj, ii] < 0:
+                x += di
+                y += dj
+    length = np.sqrt(x * x + y * y)
+    if length > 0.0:
+        out[0], out[1] = x / length, y / length
+    else:
+        out[0], out[1] = 1.0, 0.0
+
+
+@njit(cache=True, nogil=True)
+@no_type_check
+def trace_mask(owners, pixels, normals):
+    """Find the covered pixels beside one that is not covered.
+
+    Args:
+        owners: (H, W) int32, negative where nothing covers the pixel.
+        pixels: (N, 2) filled with column and row.
+        normals: (N, 2) filled with the direction out of the mask.
+
+    Returns:
+        How many were found; at most N.
+    """
+    found = 0
+    height, width = owners.shape
+    bounds = (0, width - 1, 0, height - 1)
+    for j in range(1, height - 1):
+        for i in range(1, width - 1):
+            if owners[j, i] < 0 or (
+                owners[j, i - 1] >= 0 and owners[j, i + 1] >= 0 and owners[j - 1, i] >= 0 and owners[j + 1, i] >= 0
+            ):
+                continue
+            if found == pixels.shape[0]:
+                return found
+            pixels[found, 0], pixels[found, 1] = i, j
+            outward(owners, bounds, j, i, normals[found])
+            found += 1
+    return found

@@ -25,20 +25,20 @@ def test_samples_are_linear_in_the_control_points_and_lie_on_the_surface(chair, 
 
     values = chair.compiled.random_values(np.random.default_rng(4), 2)
     first, second = chair.compiled.control_points(values)
-    matrix, normals = chair.samples(first, 300, steps, 0.5)
-    assert matrix.shape == (300, len(first))
-    np.testing.assert_allclose(matrix.sum(axis=1), 1.0)
+    made, normals = chair.samples(first, 300, steps, 0.5)
+    assert len(made) == 300
+    np.testing.assert_allclose(made.points(np.ones_like(first)), 1.0)  # weights of each sample sum up to 1
     np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0)
     on_surface = TriangleDistance(chair.compiled.instance(values[0], steps))
-    assert on_surface(matrix @ first).max() < 1e-12
-    middle = matrix @ (0.5 * first + 0.5 * second)
-    np.testing.assert_allclose(middle, 0.5 * (matrix @ first) + 0.5 * (matrix @ second), atol=1e-12)
+    assert on_surface(made.points(first)).max() < 1e-12
+    middle = made.points(0.5 * first + 0.5 * second)
+    np.testing.assert_allclose(middle, 0.5 * (made.points(first) + made.points(second)), atol=1e-12)
 
 
 def test_parts_that_are_not_there_get_no_samples(chair):
     values = chair.settle(chair.compiled.values_from_mapping({"back": 3, "armrests": 0}))
-    matrix, _ = chair.samples(chair.control_points(values), 400, COARSE, 0.5)
-    top = (matrix @ chair.control_points(values))[:, 2].max()
+    made, _ = chair.samples(chair.control_points(values), 400, COARSE, 0.5)
+    top = made.points(chair.control_points(values))[:, 2].max()
     assert top <= 0.2 + 1e-9  # the seat's
 
 
@@ -53,7 +53,7 @@ def test_small_models_are_drawn_as_they_are_and_large_ones_with_fewer_triangles_
 
     for compiled, drawn in ((lever(), FINE), (compile_model(load_shipped("glass_with_stem_shell")), COARSE)):
         model, values = FittedModel(compiled), compiled.base_values()
-        points = model.outline @ model.control_points(values)
+        points = model.outline.points(model.control_points(values))
         np.testing.assert_array_equal(model.outline_triangles, model.triangles[drawn])
         assert model.outline_triangles.max() < len(points)
         assert TriangleDistance(compiled.instance(values, FINE))(points).max() < 1e-12

@@ -10,14 +10,16 @@ from scipy import sparse
 from scipy.spatial.transform import Rotation
 
 from shapewright.distances.alignment import rotations_24
-from shapewright.estimation.fast import kernels
+from shapewright.estimation import sampling_kernels
+from shapewright.estimation.fast import matching_kernels, pose_kernels, system_kernels
+from shapewright.estimation.fast.sparse_rows import SparseRows
 from shapewright.mesh import TriangleMesh
 
 SEEDS = st.integers(0, 2**32 - 1)
 
 
 def sampled(mesh: TriangleMesh, count: int, first_share: float = 0.5):
-    return kernels.sample_surface(mesh.vertices, mesh.faces, count, first_share)
+    return sampling_kernels.sample_surface(mesh.vertices, mesh.faces, count, first_share)
 
 
 # ---------------------------------------------------------------------- samples of a surface
@@ -38,7 +40,7 @@ def test_samples_lie_on_their_triangles_each_of_which_has_its_share_of_area(seed
     expected = count * mesh.face_areas / mesh.area
     assert np.abs(np.bincount(chosen, minlength=n_triangles) - expected).max() <= 1.0 + 1e-6
     points = np.empty((count, 3))
-    kernels.place_samples(mesh.vertices, mesh.faces, chosen, weights, points)
+    sampling_kernels.place_samples(mesh.vertices, mesh.faces, chosen, weights, points)
     np.testing.assert_allclose(points, np.einsum("nk,nkd->nd", weights, mesh.triangles[chosen]), atol=1e-12)
 
 
@@ -46,7 +48,7 @@ def test_samples_of_one_triangle_are_spread_evenly_in_it():
     mesh = TriangleMesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]]))
     points = np.empty((2000, 3))
     chosen, weights, _ = sampled(mesh, 2000)
-    kernels.place_samples(mesh.vertices, mesh.faces, chosen, weights, points)
+    sampling_kernels.place_samples(mesh.vertices, mesh.faces, chosen, weights, points)
     quarters = np.array(
         [
             (points[:, 0] > 0.5).sum(),
@@ -83,7 +85,7 @@ def test_the_true_rotation_scores_best(lopsided, number):
     rotations = rotations_24()
     query = lopsided @ rotations[number].T
     scores = np.empty(24, dtype=np.float32)
-    kernels.score_rotations(
+    pose_kernels.score_rotations(
         np.ascontiguousarray(query.T, dtype=np.float32),
         lopsided.astype(np.float32),
         np.ascontiguousarray(rotations, dtype=np.float32),
@@ -98,7 +100,7 @@ def test_a_score_is_the_mean_distance_both_ways(lopsided):
     query, model = lopsided[:70] + 0.1, lopsided[50:]
     rotation = Rotation.from_rotvec([0.3, -0.2, 0.5]).as_matrix()
     scores = np.empty(1, dtype=np.float32)
-    kernels.score_rotations(
+    pose_kernels.score_rotations(
         np.ascontiguousarray(query.T, dtype=np.float32),
         model.astype(np.float32),
         rotation[None].astype(np.float32),
@@ -114,7 +116,7 @@ def test_closest_points_recover_a_similarity(lopsided, keeps_scale, keeps_rotati
     true = Rotation.from_rotvec([0.5, -1.0, 2.0]).as_matrix()
     scale, translation = 1.7, np.array([3.0, -2.0, 0.5])
     query = scale * lopsided @ true.T + translation
-    rotation, shift, found_scale, mean = kernels.align_by_closest_points(
+    rotation, shift, found_scale, mean = pose_kernels.align_by_closest_points(
         query,
         lopsided,
         true if keeps_rotation else np.ascontiguousarray(Rotation.from_rotvec([0.05, 0.04, -0.06]).as_matrix() @ true),
@@ -134,7 +136,7 @@ def test_closest_points_of_flat_things_are_aligned_by_a_proper_rotation():
     rng = np.random.default_rng(0)
     flat = np.column_stack([rng.random((50, 2)) * (2.0, 1.0), np.zeros(50)])
     mirrored = flat * (-1.0, 1.0, 1.0)
-    rotation, _, scale, _ = kernels.align_by_closest_points(
+    rotation, _, scale, _ = pose_kernels.align_by_closest_points(
         flat, mirrored, np.eye(3), np.zeros(3), 1.0, 10, False, False
     )
     assert np.linalg.det(rotation) == pytest.approx(1.0)
@@ -143,7 +145,7 @@ def test_closest_points_of_flat_things_are_aligned_by_a_proper_rotation():
 
 def test_a_single_point_is_left_where_it_is():
     point = np.zeros((5, 3))
-    rotation, shift, scale, mean = kernels.align_by_closest_points(
+    rotation, shift, scale, mean = pose_kernels.align_by_closest_points(
         np.ones((4, 3)), point, np.eye(3), np.zeros(3), 2.0, 5, False, False
     )
     np.testing.assert_array_equal(rotation, np.eye(3))
@@ -159,7 +161,7 @@ def closest(points, corners) -> np.ndarray:
     count = len(points)
     normals = np.tile([0.0, 0.0, 1.0], (count, 1))
     places, place_normals = np.empty((count, 3)), np.empty((count, 3))
-    kernels.match_to_triangles(
+    matching_kernels.match_to_triangles(
         points, normals, corners[:1].copy(), normals[:1], np.zeros(1, dtype=np.int64), corners,
         np.array([[0, 1, 2]]), np.zeros((count, 1), dtype=np.int64), 0.1, 0.1, places, place_normals,
     )  # fmt: skip
@@ -215,7 +217,7 @@ def test_points_on_two_sheets_are_matched_with_the_sheet_that_faces_as_they_do()
     point, near = np.array([[0.05, 0.3, 0.04]]), np.array([[0, 1]])
     for normal, expected in (([0.0, 0, 1], [0.05, 0.3, 0.0]), ([-1.0, 0, 0], [0.02, 0.3, 0.04])):
         places, normals = np.empty((1, 3)), np.empty((1, 3))
-        kernels.match_to_triangles(
+        matching_kernels.match_to_triangles(
             point, np.array([normal]), samples, sample_normals, np.arange(2), vertices, faces, near, 0.05, 0.1,
             places, normals,
         )  # fmt: skip
@@ -228,14 +230,14 @@ def test_the_winding_of_samples_makes_no_difference():
     mesh = simple_shapes.goblet()
     faces, weights, normals = sampled(mesh, 400)
     samples = np.empty((400, 3))
-    kernels.place_samples(mesh.vertices, mesh.faces, faces, weights, samples)
+    sampling_kernels.place_samples(mesh.vertices, mesh.faces, faces, weights, samples)
     points = samples[::4] + 0.05 * rng.normal(size=(100, 3))
     near = np.argsort(np.linalg.norm(points[:, None] - samples[None], axis=2), axis=1)[:, :6]
     found = []
     for signs in (1.0, rng.choice([-1.0, 1.0], (400, 1))):
         chosen, mean = np.empty(100, dtype=np.int64), np.empty((100, 3))
         turned = np.ascontiguousarray(signs * normals)
-        kernels.match_to_samples(points, normals[::4].copy(), samples, turned, near, 0.05, 0.1, chosen, mean)
+        matching_kernels.match_to_samples(points, normals[::4].copy(), samples, turned, near, 0.05, 0.1, chosen, mean)
         found.append((chosen, mean))
     np.testing.assert_array_equal(found[0][0], found[1][0])
     np.testing.assert_allclose(found[0][1], found[1][1], atol=1e-12)
@@ -254,7 +256,7 @@ def test_pairs_add_the_gradient_and_curvature_of_their_energy():
     normals = rng.normal(size=(count, 3))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     metrics, forces = np.ones((7, 3, 3)), np.ones((7, 3))
-    kernels.add_pairs(rows, offsets, normals, spacing, width, share, metrics, forces)
+    system_kernels.add_pairs(rows, offsets, normals, spacing, width, share, metrics, forces)
     expected_metrics, expected_forces = np.ones((7, 3, 3)), np.ones((7, 3))
     for row, offset, normal in zip(rows, offsets, normals, strict=True):
         out = offset @ normal
@@ -272,7 +274,7 @@ def test_pairs_add_the_gradient_and_curvature_of_their_energy():
 
 def test_a_pair_within_the_spacing_pulls_along_its_normal_only():
     metrics, forces = np.zeros((1, 3, 3)), np.zeros((1, 3))
-    kernels.add_pairs(
+    system_kernels.add_pairs(
         np.zeros(1, dtype=np.int64), np.array([[0.1, 0.0, 0.2]]), np.array([[0.0, 0.0, 1.0]]), 0.15, 1e6, 1.0,
         metrics, forces,
     )  # fmt: skip
@@ -280,36 +282,54 @@ def test_a_pair_within_the_spacing_pulls_along_its_normal_only():
     np.testing.assert_allclose(forces[0], [0.0, 0.0, 0.2], atol=1e-9)
 
 
-def test_metrics_are_multiplied_with_each_samples_jacobian():
+def test_the_normal_equations_are_those_of_finite_differences():
+    """Samples are made of control points that parameters move; the pose turns, shifts and grows them about a center."""
     rng = np.random.default_rng(0)
-    metrics, jacobian = rng.normal(size=(9, 3, 3)), rng.normal(size=(9, 3, 11))
-    out = np.empty_like(jacobian)
-    kernels.apply_metrics(metrics, jacobian, out)
-    np.testing.assert_allclose(out, metrics @ jacobian, atol=1e-12)
-
-
-def test_the_jacobian_of_a_pose_is_that_of_finite_differences():
-    rng = np.random.default_rng(0)
-    base, moves = rng.normal(size=(12, 3)), rng.normal(size=(12, 2, 3))
-    rotation, scale = Rotation.random(random_state=rng).as_matrix(), 1.6
+    made = SparseRows.of(sparse.csr_array(rng.random((12, 6)) * (rng.random((12, 6)) < 0.5)))
+    control, slopes = rng.normal(size=(6, 3)), rng.normal(size=(2, 6, 3)) * (rng.random((2, 6, 1)) < 0.5)
+    rotation, scale = Rotation.random(rng=rng).as_matrix(), 1.6
     translation, center = rng.normal(size=3), rng.normal(size=3)
+    metrics, forces = rng.normal(size=(12, 3, 3)), rng.normal(size=(12, 3))
+    metrics = metrics @ metrics.transpose(0, 2, 1)
+    metrics[3], forces[3] = 0.0, 0.0  # a sample that nothing pulls
 
     def placed(step: np.ndarray) -> np.ndarray:
-        points = scale * (base + step[0] * moves[:, 0] + step[1] * moves[:, 1]) @ rotation.T + translation
+        points = scale * made.points(control + step[0] * slopes[0] + step[1] * slopes[1]) @ rotation.T + translation
         turn = Rotation.from_rotvec(step[2:5]).as_matrix()
         return center + np.exp(step[8]) * (points - center) @ turn.T + step[5:8]
 
-    jacobian = np.empty((12, 3, 9))
-    kernels.pose_jacobian(moves.reshape(12, -1), placed(np.zeros(9)), scale * rotation, center, jacobian)
-    for column, direction in enumerate(1e-6 * np.eye(9)):
-        slope = (placed(direction) - placed(-direction)) / 2e-6
-        np.testing.assert_allclose(jacobian[:, :, column], slope, atol=1e-8)
+    curvature, gradient = np.zeros((9, 9)), np.zeros(9)
+    system_kernels.add_system(
+        made.starts, made.columns, made.entries, *system_kernels.moved_columns(slopes), placed(np.zeros(9)),
+        scale * rotation, center, metrics, forces, curvature, gradient,
+    )  # fmt: skip
+    jacobian = np.stack([(placed(step) - placed(-step)) / 2e-6 for step in 1e-6 * np.eye(9)], axis=2)
+    expected = np.einsum("nac,nab,nbd->cd", jacobian, metrics, jacobian)
+    np.testing.assert_allclose(curvature, np.tril(expected), atol=1e-6)
+    np.testing.assert_allclose(gradient, np.einsum("nac,na->c", jacobian, forces), atol=1e-7)
 
 
-def test_samples_of_several_rows_are_a_sparse_product():
-    rng = np.random.default_rng(0)
-    matrix = sparse.csr_array(rng.normal(size=(8, 5)) * (rng.random((8, 5)) < 0.4))
-    controls = rng.normal(size=(3, 5, 3))
-    product = kernels.sparse_product(matrix, controls)
-    expected = np.concatenate([matrix @ one for one in controls], axis=1)
-    np.testing.assert_allclose(product, expected, atol=1e-12)
+def test_columns_that_move_a_point_are_listed_with_it():
+    slopes = np.zeros((3, 4, 3))
+    slopes[0, 1], slopes[2, 1], slopes[1, 3] = (1, 0, 0), (0, 2, 0), (0, 0, 3)
+    starts, columns, moves = system_kernels.moved_columns(slopes)
+    np.testing.assert_array_equal(starts, [0, 0, 2, 2, 3])
+    np.testing.assert_array_equal(columns, [0, 2, 1])
+    np.testing.assert_array_equal(moves, [(1, 0, 0), (0, 2, 0), (0, 0, 3)])
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=SEEDS)
+def test_samples_of_a_surface_are_rows_over_its_control_points(seed):
+    rng = np.random.default_rng(seed)
+    matrix = sparse.csr_array(rng.normal(size=(8, 5)) * (rng.random((8, 5)) < 0.5))
+    surface, control = SparseRows.of(matrix), rng.normal(size=(5, 3))
+    vertices = matrix @ control
+    np.testing.assert_allclose(surface.points(control), vertices, atol=1e-12)
+    np.testing.assert_allclose(surface.first(3).points(control), vertices[:3], atol=1e-12)
+    triangles = rng.integers(0, 8, (6, 3))
+    faces, weights = rng.integers(0, 6, 20), rng.dirichlet(np.ones(3), 20)
+    combined = surface.combined(faces, weights, triangles)
+    assert len(combined) == 20
+    expected = np.einsum("nk,nkd->nd", weights, vertices[triangles[faces]])
+    np.testing.assert_allclose(combined.points(control), expected, atol=1e-12)

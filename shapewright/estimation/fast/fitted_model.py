@@ -5,9 +5,9 @@ from typing import Final
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy import sparse
 
-from shapewright.estimation.fast.kernels import sample_surface
+from shapewright.estimation.fast.sparse_rows import SparseRows
+from shapewright.estimation.sampling_kernels import sample_surface
 from shapewright.modeling.compiled import CompiledModel
 
 COARSE, FINE = 1, 2
@@ -32,9 +32,9 @@ class FittedModel:
         self.is_option: Bool[np.ndarray, " P"] = np.array([bool(options) for options in self.options], dtype=bool)
 
     @cached_property
-    def matrices(self) -> dict[int, sparse.csr_array]:
-        """The surface's vertices as a product with those of the control mesh, by subdivision steps."""
-        return {steps: self.compiled.surface_matrix(steps) for steps in (COARSE, FINE)}
+    def surfaces(self) -> dict[int, SparseRows]:
+        """What makes the surface's vertices of control points, by subdivision steps."""
+        return {steps: SparseRows.of(self.compiled.surface_matrix(steps)) for steps in (COARSE, FINE)}
 
     @cached_property
     def triangles(self) -> dict[int, Int[np.ndarray, "F 3"]]:
@@ -42,14 +42,14 @@ class FittedModel:
         return {steps: np.ascontiguousarray(self.compiled.surface_triangles(steps)) for steps in (COARSE, FINE)}
 
     @cached_property
-    def outline(self) -> sparse.csr_array:
-        """The vertices of the surface that is drawn while searching, as a product with those of the control mesh.
+    def outline(self) -> SparseRows:
+        """What makes the vertices of the surface that is drawn while searching.
 
         They are those of the coarse surface, at the places that the fine one gives them. Where the fine surface has
         few triangles it is drawn itself: the chords of a coarse mesh stay far inside a round shape.
         """
-        matrix = self.matrices[FINE]
-        return matrix if self._draws_fine else matrix[: self.matrices[COARSE].shape[0]]
+        fine = self.surfaces[FINE]
+        return fine if self._draws_fine else fine.first(len(self.surfaces[COARSE]))
 
     @property
     def outline_triangles(self) -> Int[np.ndarray, "F 3"]:
@@ -81,27 +81,15 @@ class FittedModel:
 
     def samples(
         self, control: Float[np.ndarray, "V 3"], count: int, steps: int, first_share: float
-    ) -> tuple[sparse.csr_array, Float[np.ndarray, "N 3"]] | None:
+    ) -> tuple[SparseRows, Float[np.ndarray, "N 3"]] | None:
         """Spread samples evenly over an instance.
 
         Returns:
-            A matrix (N, V) that makes the samples of control points, and the normals (N, 3) of this instance; ``None``
-            if the instance has no area.
+            What makes the N samples of control points, and the normals (N, 3) of this instance; ``None`` if the
+            instance has no area.
         """
-        matrix, triangles = self.matrices[steps], self.triangles[steps]
-        chosen, weights, normals = sample_surface(np.ascontiguousarray(matrix @ control), triangles, count, first_share)
+        surface, triangles = self.surfaces[steps], self.triangles[steps]
+        chosen, weights, normals = sample_surface(surface.points(control), triangles, count, first_share)
         if len(chosen) == 0:
             return None
-        return barycentric_rows(chosen, weights, triangles, matrix), normals
-
-
-def barycentric_rows(
-    faces: Int[np.ndarray, " N"],
-    weights: Float[np.ndarray, "N 3"],
-    triangles: Int[np.ndarray, "F 3"],
-    matrix: sparse.csr_array,
-) -> sparse.csr_array:
-    """Return the matrix (N, V) that makes barycentric samples of a surface out of control points."""
-    ends = np.arange(0, 3 * len(faces) + 1, 3)
-    spread = sparse.csr_array((weights.ravel(), triangles[faces].ravel(), ends), shape=(len(faces), matrix.shape[0]))
-    return sparse.csr_array(spread @ matrix)
+        return surface.combined(chosen, weights, triangles), normals

@@ -9,7 +9,6 @@ from jaxtyping import Float
 from shapewright.estimation.determination.determine import Determination, continuous_columns, determine
 from shapewright.estimation.determination.factors import IntervalFactors
 from shapewright.estimation.determination.information import pose_columns
-from shapewright.estimation.fast import kernels
 from shapewright.estimation.fast.candidate import Candidate
 from shapewright.estimation.fast.deviation import POINTS, measure_deviation
 from shapewright.estimation.fast.fitted_model import FINE
@@ -48,12 +47,12 @@ def measure_sensitivity(target: Target, candidate: Candidate) -> Sensitivity | N
     samples = model.samples(controls[0], POINTS, FINE, 0.5)
     if samples is None:
         return None
-    matrix, normals = samples
-    moves = kernels.sparse_product(matrix, controls).reshape(POINTS, -1, 3)
-    placed = candidate.placed(np.ascontiguousarray(moves[:, 0]))
+    made, normals = samples
+    points = np.stack([made.points(control) for control in controls], axis=1)
+    placed = candidate.placed(points[:, 0])
     turned = np.ascontiguousarray(normals @ candidate.rotation.T)
     own = (turned @ (candidate.scale * candidate.rotation))[:, None]  # normals in model space, scaled
-    slopes = ((moves[:, 1:] - moves[:, :1]) * own).sum(axis=2)
+    slopes = ((points[:, 1:] - points[:, :1]) * own).sum(axis=2)
     with np.errstate(divide="ignore", invalid="ignore"):
         slopes = np.where(differences != 0, slopes / differences, 0.0)
     deviation = measure_deviation(target, placed, turned)

@@ -12,10 +12,11 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy.spatial import cKDTree
 
-from shapewright.estimation.fast import kernels
+from shapewright.estimation.fast import matching_kernels, system_kernels
 from shapewright.estimation.fast.candidate import Candidate, Curvature
-from shapewright.estimation.fast.fitted_model import barycentric_rows
 from shapewright.estimation.fast.measure import outline_distance
+from shapewright.estimation.fast.outline import Trace
+from shapewright.estimation.fast.sparse_rows import SparseRows
 from shapewright.estimation.fast.target import SAMPLES, Target
 
 _DIFFERENCE = 1e-4
@@ -32,7 +33,7 @@ _SETTLED = 2e-5
 """Root mean square move of the surface, in half extents, below which a search by surfaces alone has settled. Distances
 between samples have a floor far above what the values still gain."""
 _EXACT_SPACING = 0.005
-_ACROSS = 0.1
+ACROSS = 0.1
 """Pairs whose normals are at a right angle cost as much as so large a distance."""
 
 
@@ -94,24 +95,28 @@ def fit(
     for number in range(effort.rounds + 1):
         if checkpoint is not None:
             checkpoint()
-        if effort.outline and number >= effort.rounds // 2:
-            candidate = outline_distance(target, candidate)
-            gains = candidate.zbuffer < (1.0 - _GAIN) * best.zbuffer
-            stale = 0 if gains or number == effort.rounds // 2 else stale + 1
-            best = candidate if number == effort.rounds // 2 else min(best, candidate, key=lambda one: one.zbuffer)
-            if number == effort.rounds or stale > _PATIENCE:
-                break
-        model = candidate.model
-        columns, lowest, highest = model.free_columns(candidate.values)
-        rows, differences = _rows_around(candidate, columns, highest)
-        controls = model.compiled.control_points(rows)
+        if effort.outline and number == effort.rounds:
+            return min(best, outline_distance(target, candidate), key=lambda one: one.zbuffer)
+        around = _Around.of(candidate)
+        trace = None
+        if effort.outline:
+            model = candidate.model
+            drawn = candidate.placed(model.outline.points(around.control))
+            zbuffer, trace = target.traced(drawn, model.outline_triangles)
+            if number >= effort.rounds // 2:
+                candidate = replace(candidate, zbuffer=zbuffer)
+                first = number == effort.rounds // 2
+                stale = 0 if first or zbuffer < (1.0 - _GAIN) * best.zbuffer else stale + 1
+                best = candidate if first or zbuffer < best.zbuffer else best
+                if stale > _PATIENCE:
+                    break
         if number % _SAMPLED_EVERY == 0 or samples is None:
-            samples = model.samples(controls[0], effort.points, effort.steps, (0.5 + 0.618 * number) % 1.0)
+            first_share = (0.5 + 0.618 * number) % 1.0
+            samples = candidate.model.samples(around.control, effort.points, effort.steps, first_share)
             if samples is None:
                 break
-        matrix, normals = samples
-        moves = kernels.sparse_product(matrix, controls)
-        matches = _match(target, candidate, effort, np.ascontiguousarray(moves[:, :3]), normals)
+        made, normals = samples
+        matches = _match(target, candidate, effort, made.points(around.control), normals)
         if not effort.outline:
             candidate = replace(candidate, misfit=matches.misfit)
             least = min(least, candidate.misfit)
@@ -119,29 +124,53 @@ def fit(
                 best = candidate
             if number == effort.rounds or movement < _SETTLED:
                 break
-        system = _surface_system(target, candidate, effort, matches, moves, differences)
-        if effort.outline:
-            _add_outline(system, target, candidate, effort, controls, differences)
-        free = np.ones(len(columns) + 7, dtype=bool)
+        system = _System.empty(len(around.columns) + 7)
+        _add_surface(system, target, candidate, effort, around, matches, made)
+        if trace is not None:
+            _add_outline(system, target, candidate, effort, around, trace)
+        free = np.ones(len(around.columns) + 7, dtype=bool)
         free[-1] = not keeps_scale
-        free[len(columns) : len(columns) + 3] = not keeps_rotation
-        step = _bounded_step(candidate, effort, system, columns, lowest, highest, free)
-        movement = float(np.sqrt(max(0.0, step @ system.curvature @ step)))
-        curvature = Curvature(columns, system.curvature)
-        candidate = replace(candidate.moved(columns, step, target.center), curvature=curvature)
+        free[-7:-4] = not keeps_rotation
+        curvature = system.whole()
+        step = _bounded_step(candidate, effort, curvature, system.gradient, around, free)
+        movement = float(np.sqrt(max(0.0, step @ curvature @ step)))
+        candidate = candidate.moved(around.columns, step, target.center)
+        candidate = replace(candidate, curvature=Curvature(around.columns, curvature))
     return best
 
 
-def _rows_around(
-    candidate: Candidate, columns: Int[np.ndarray, " D"], highest: Float[np.ndarray, " P"]
-) -> tuple[Float[np.ndarray, "B P"], Float[np.ndarray, " D"]]:
-    """Rows for finite differences, the candidate's own first, and the steps in shares of the ranges."""
-    widths = candidate.model.widths[columns]
-    upward = candidate.values[columns] + _DIFFERENCE * widths <= highest[columns]
-    differences = np.where(upward, _DIFFERENCE, -_DIFFERENCE)
-    rows = np.repeat(candidate.values[None], len(columns) + 1, axis=0)
-    rows[np.arange(1, len(columns) + 1), columns] += differences * widths
-    return rows, differences
+@dataclass(frozen=True, eq=False)
+class _Around:
+    """The control points of a candidate and how its free measures move them.
+
+    Attributes:
+        columns: of the D free measures.
+        lowest, highest: (P,) ends of the ranges.
+        control: (V, 3).
+        starts, moved, moves: which free measure moves each control point and how, for a step of a whole range.
+    """
+
+    columns: Int[np.ndarray, " D"]
+    lowest: Float[np.ndarray, " P"]
+    highest: Float[np.ndarray, " P"]
+    control: Float[np.ndarray, "V 3"]
+    starts: Int[np.ndarray, " V1"]
+    moved: Int[np.ndarray, " K"]
+    moves: Float[np.ndarray, "K 3"]
+
+    @classmethod
+    def of(cls, candidate: Candidate) -> "_Around":
+        """Evaluate the candidate, and once more for every free measure."""
+        model = candidate.model
+        columns, lowest, highest = model.free_columns(candidate.values)
+        widths = model.widths[columns]
+        upward = candidate.values[columns] + _DIFFERENCE * widths <= highest[columns]
+        differences = np.where(upward, _DIFFERENCE, -_DIFFERENCE)
+        rows = np.repeat(candidate.values[None], len(columns) + 1, axis=0)
+        rows[np.arange(1, len(columns) + 1), columns] += differences * widths
+        controls = model.compiled.control_points(rows)
+        slopes = (controls[1:] - controls[0]) / differences[:, None, None]
+        return cls(columns, lowest, highest, controls[0], *system_kernels.moved_columns(slopes))
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,13 +197,13 @@ def _match(
     count, near = effort.points, effort.neighbors
     placed = candidate.placed(samples)
     turned = np.ascontiguousarray(normals @ candidate.rotation.T)
-    there, places, place_normals = _closest(target, placed, turned, near)
+    there, places, place_normals = closest(target, placed, turned, near)
     points, point_normals = target.points[:count], target.normals[:count]
     own_tree = cKDTree(placed, balanced_tree=False, compact_nodes=False)
     own_distances, own_rows = own_tree.query(points, k=[*range(1, min(near, len(placed)) + 1)])
     chosen, chosen_normals = np.empty(count, dtype=np.int64), np.empty_like(points)
-    kernels.match_to_samples(
-        points, point_normals, placed, turned, own_rows, target.spacing(count), _ACROSS, chosen, chosen_normals
+    matching_kernels.match_to_samples(
+        points, point_normals, placed, turned, own_rows, target.spacing(count), ACROSS, chosen, chosen_normals
     )
     back = np.asarray(own_distances)[:, 0]
     misfit = 0.5 * float(np.minimum(there, _FAR).mean() + np.minimum(back, _FAR).mean())
@@ -188,25 +217,25 @@ def closest_places(
     target: Target, placed: Float[np.ndarray, "N 3"], normals: Float[np.ndarray, "N 3"]
 ) -> Float[np.ndarray, "N 3"]:
     """Return the places on the query's triangles that samples of an instance belong to."""
-    return _closest(target, placed, normals, Effort.neighbors)[1]
+    return closest(target, placed, normals, Effort.neighbors)[1]
 
 
-def _closest(
+def closest(
     target: Target, placed: Float[np.ndarray, "N 3"], normals: Float[np.ndarray, "N 3"], near: int
 ) -> tuple[Float[np.ndarray, " N"], Float[np.ndarray, "N 3"], Float[np.ndarray, "N 3"]]:
     """Return the distance to the nearest sample of the query, the place on its triangles, and the normal there."""
     distances, rows = target.tree.query(placed, k=[*range(1, near + 1)])
     places, place_normals = np.empty_like(placed), np.empty_like(placed)
-    kernels.match_to_triangles(
+    matching_kernels.match_to_triangles(
         placed, normals, target.points, target.normals, target.faces, target.vertices, target.triangles,
-        rows, target.spacing(SAMPLES), _ACROSS, places, place_normals,
+        rows, target.spacing(SAMPLES), ACROSS, places, place_normals,
     )  # fmt: skip
     return np.asarray(distances)[:, 0], places, place_normals
 
 
 @dataclass(frozen=True, eq=False)
 class _System:
-    """Normal equations: the curvature and the gradient, in the units of :class:`Curvature`."""
+    """Normal equations: the lower triangle of the curvature, and the gradient, in the units of :class:`Curvature`."""
 
     curvature: Float[np.ndarray, "N N"]
     gradient: Float[np.ndarray, " N"]
@@ -219,86 +248,71 @@ class _System:
         self,
         candidate: Candidate,
         target: Target,
-        moves: Float[np.ndarray, "N C"],
-        differences: Float[np.ndarray, " D"],
+        around: _Around,
+        made: SparseRows,
+        placed: Float[np.ndarray, "N 3"],
         metrics: Float[np.ndarray, "N 3 3"],
         forces: Float[np.ndarray, "N 3"],
     ) -> None:
-        """Add what pulls samples; ``moves`` are the samples of every row around the candidate, in model space."""
-        count = len(moves)
-        slopes = moves[:, 3:].reshape(count, -1, 3) - moves[:, None, :3]
-        slopes /= differences[:, None]
-        jacobian = np.empty((count, 3, len(differences) + 7))
-        kernels.pose_jacobian(
-            slopes.reshape(count, -1), candidate.placed(np.ascontiguousarray(moves[:, :3])),
-            candidate.scale * candidate.rotation, target.center, jacobian,
+        """Add what pulls samples that are made of control points."""
+        system_kernels.add_system(
+            made.starts, made.columns, made.entries, around.starts, around.moved, around.moves, placed,
+            candidate.scale * candidate.rotation, target.center, metrics, forces, self.curvature, self.gradient,
         )  # fmt: skip
-        weighted = np.empty_like(jacobian)
-        kernels.apply_metrics(metrics, jacobian, weighted)
-        flat = jacobian.reshape(3 * count, -1)
-        self.curvature[:] += flat.T @ weighted.reshape(3 * count, -1)
-        self.gradient[:] += flat.T @ forces.ravel()
+
+    def whole(self) -> Float[np.ndarray, "N N"]:
+        """Return the whole curvature."""
+        return self.curvature + np.tril(self.curvature, -1).T
 
 
-def _surface_system(
-    target: Target,
-    candidate: Candidate,
-    effort: Effort,
-    matches: _Matches,
-    moves: Float[np.ndarray, "N C"],
-    differences: Float[np.ndarray, " D"],
-) -> _System:
-    count, n_query = len(matches.placed), len(matches.query_rows)
-    width = max(_LEAST_WIDTH, 1.5 * matches.median) if effort.width is None else effort.width
-    metrics, forces = np.zeros((count, 3, 3)), np.zeros((count, 3))
-    kernels.add_pairs(
-        np.arange(count), matches.offsets, matches.normals, _EXACT_SPACING, width, 1.0 / count, metrics, forces
-    )
-    kernels.add_pairs(
-        matches.query_rows, matches.query_offsets, matches.query_normals, 1.5 * target.spacing(n_query), width,
-        1.0 / n_query, metrics, forces,
-    )  # fmt: skip
-    system = _System.empty(len(differences) + 7)
-    system.add(candidate, target, moves, differences, metrics, forces)
-    return system
-
-
-def _add_outline(
+def _add_surface(
     system: _System,
     target: Target,
     candidate: Candidate,
     effort: Effort,
-    controls: Float[np.ndarray, "B V 3"],
-    differences: Float[np.ndarray, " D"],
+    around: _Around,
+    matches: _Matches,
+    made: SparseRows,
 ) -> None:
-    model = candidate.model
-    placed = np.ascontiguousarray(candidate.placed(model.outline @ controls[0]))
-    pulls = target.outline.pulls(
-        placed, model.outline_triangles, effort.outline, effort.outline_weight, effort.outline_width
+    count, n_query = len(matches.placed), len(matches.query_rows)
+    width = max(_LEAST_WIDTH, 1.5 * matches.median) if effort.width is None else effort.width
+    metrics, forces = np.zeros((count, 3, 3)), np.zeros((count, 3))
+    system_kernels.add_pairs(
+        np.arange(count), matches.offsets, matches.normals, _EXACT_SPACING, width, 1.0 / count, metrics, forces
     )
+    system_kernels.add_pairs(
+        matches.query_rows, matches.query_offsets, matches.query_normals, 1.5 * target.spacing(n_query), width,
+        1.0 / n_query, metrics, forces,
+    )  # fmt: skip
+    system.add(candidate, target, around, made, matches.placed, metrics, forces)
+
+
+def _add_outline(
+    system: _System, target: Target, candidate: Candidate, effort: Effort, around: _Around, trace: Trace
+) -> None:
+    pulls = target.outline.pulls(trace, effort.outline, effort.outline_weight, effort.outline_width)
     if pulls is not None:
-        matrix = barycentric_rows(pulls.faces, pulls.weights, model.outline_triangles, model.outline)
-        system.add(
-            candidate, target, kernels.sparse_product(matrix, controls), differences, pulls.metrics, pulls.forces
-        )
+        made = candidate.model.outline.combined(pulls.faces, pulls.weights, candidate.model.outline_triangles)
+        placed = candidate.placed(made.points(around.control))
+        system.add(candidate, target, around, made, placed, pulls.metrics, pulls.forces)
 
 
 def _bounded_step(
     candidate: Candidate,
     effort: Effort,
-    system: _System,
-    columns: Int[np.ndarray, " D"],
-    lowest: Float[np.ndarray, " P"],
-    highest: Float[np.ndarray, " P"],
+    curvature: Float[np.ndarray, "N N"],
+    gradient: Float[np.ndarray, " N"],
+    around: _Around,
     free: Bool[np.ndarray, " N"],
 ) -> Float[np.ndarray, " N"]:
     """Solve for a damped step that stays in the ranges: what would leave its range is held at its end."""
+    columns, lowest, highest = around.columns, around.lowest, around.highest
     count = len(columns)
     widths = candidate.model.widths[columns]
-    matrix, gradient = system.curvature.copy(), system.gradient.copy()
+    matrix, gradient = curvature.copy(), gradient.copy()
     middle = (candidate.values[columns] - candidate.model.compiled.minimum[columns]) / widths - 0.5
     diagonal = np.arange(count + 7)
-    matrix[diagonal, diagonal] += effort.damping * np.maximum(np.diag(system.curvature), 1e-6)
+    matrix[diagonal, diagonal] += effort.damping * np.maximum(np.diag(curvature), 1e-6)
     matrix[diagonal[:count], diagonal[:count]] += effort.pull
     gradient[:count] += effort.pull * middle
     down = np.maximum((lowest[columns] - candidate.values[columns]) / widths, -_REACH)

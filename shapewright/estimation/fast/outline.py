@@ -5,21 +5,40 @@ of the z-buffer distance is there. Outlines of both objects that face the same w
 """
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy.spatial import cKDTree
 
-from shapewright.distances.depth_kernels import WINDOW
+from shapewright.distances.depth_kernels import WINDOW, trace_mask
 from shapewright.distances.rasterize import PASS_FRAMES
 from shapewright.estimation.fast import outline_kernels
 
-_MOST_PIXELS = 8_000
-_APART = 100.0
-"""Distance between the views in the one search tree that holds them all."""
-_NEIGHBORS = 6
-_ACROSS = 0.1
-_SPACING_PIXELS = 2.0
+MOST_PIXELS: Final = 16_000
+"""Outline pixels of an object in all views together; more are left out."""
+_LEAST: Final = 6
+_ACROSS: Final = 0.1
+_SPACING_PIXELS: Final = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """The outline of an instance, view after view.
+
+    Attributes:
+        size: pixels along each side of a view.
+        faces, weights: (N,), (N, 3), where on its surface each outline pixel is.
+        views: (N,) number of the view.
+        pixels: (N, 2) column and row.
+        normals: (N, 2) direction out of the outline.
+    """
+
+    size: int
+    faces: Int[np.ndarray, " N"]
+    weights: Float[np.ndarray, "N 3"]
+    views: Int[np.ndarray, " N"]
+    pixels: Int[np.ndarray, "N 2"]
+    normals: Float[np.ndarray, "N 2"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,38 +61,25 @@ class TargetOutline:
 
     Args:
         covered: (7, S, S), which pixels the query covers.
-        rng: for the order of the points, so that the first few of them are spread evenly.
+        rng: for the order of the points of a view, so that the first few of them are spread evenly.
     """
 
     def __init__(self, covered: Bool[np.ndarray, "7 S S"], rng: np.random.Generator) -> None:
-        self._size = covered.shape[1]
-        self._pixel = 2.0 * WINDOW / self._size
-        pixels, normals, views = [], [], []
-        for view, mask in enumerate(covered):
-            found, facing = np.empty((_MOST_PIXELS, 2), dtype=np.int64), np.empty((_MOST_PIXELS, 2))
-            count = outline_kernels.mask_outline(mask, found, facing)
-            pixels.append(found[:count])
-            normals.append(facing[:count])
-            views.append(np.full(count, view))
-        order = rng.permutation(sum(map(len, pixels)))
-        self._points: Float[np.ndarray, "N 2"] = np.concatenate(pixels)[order] * self._pixel
-        self._normals: Float[np.ndarray, "N 2"] = np.concatenate(normals)[order]
-        self._views: Int[np.ndarray, " N"] = np.concatenate(views)[order]
-        self._tree = cKDTree(_apart(self._points, self._views), balanced_tree=False)
+        most = MOST_PIXELS // len(covered)
+        places = []
+        for mask in covered:
+            pixels, normals = np.empty((most, 2), dtype=np.int64), np.empty((most, 2))
+            count = trace_mask(np.where(mask, 0, -1).astype(np.int32), pixels, normals)
+            order = rng.permutation(count)
+            places.append(_places(pixels[order], normals[order], covered.shape[1]))
+        self._places: Float[np.ndarray, "4 N"] = np.concatenate(places, axis=1)
+        self._starts = np.concatenate([[0], np.cumsum([one.shape[1] for one in places])])
 
-    def pulls(
-        self,
-        points: Float[np.ndarray, "V 3"],
-        triangles: Int[np.ndarray, "F 3"],
-        count: int,
-        weight: float,
-        width: float,
-    ) -> OutlinePulls | None:
+    def pulls(self, trace: Trace, count: int, weight: float, width: float) -> OutlinePulls | None:
         """Match the outlines of an instance.
 
         Args:
-            points: the instance's vertices, placed.
-            triangles: of the instance.
+            trace: the outlines of the instance.
             count: outline points at most, on either side.
             weight: of all pairs of one direction together; those of surfaces have 1.
             width: of the robust weight.
@@ -81,52 +87,39 @@ class TargetOutline:
         Returns:
             The pulls; ``None`` if the instance has hardly any outline.
         """
-        faces, weights = np.empty(_MOST_PIXELS, dtype=np.int64), np.empty((_MOST_PIXELS, 3))
-        views, pixels = np.empty(_MOST_PIXELS, dtype=np.int64), np.empty((_MOST_PIXELS, 2), dtype=np.int64)
-        facing = np.empty((_MOST_PIXELS, 2))
-        found = outline_kernels.outline_points(
-            points, triangles, PASS_FRAMES, self._size, WINDOW, faces, weights, views, pixels, facing
-        )
-        if min(found, len(self._points)) < _NEIGHBORS:
+        every = max(1, -(-len(trace.faces) // count))
+        some = slice(0, len(trace.faces), every)
+        faces, views = trace.faces[some], trace.views[some]
+        if min(len(faces), self._starts[-1]) < _LEAST:
             return None
-        every = max(1, -(-found // count))
-        some = np.arange(0, found, every)
-        views, places, facing = views[some], pixels[some] * self._pixel, facing[some]
-        if len(some) < _NEIGHBORS:
-            return None
-        metrics, forces = np.zeros((len(some), 3, 3)), np.zeros((len(some), 3))
-        near = self._tree.query(_apart(places, views), k=_NEIGHBORS)[1]
-        chosen = np.empty(len(some), dtype=np.int64)
-        outline_kernels.match_outlines(places, facing, self._points, self._normals, near, _ACROSS, chosen)
-        self._add(np.arange(len(some)), places, chosen, views, 1, weight / len(some), width, metrics, forces)
-        own = np.arange(min(count, len(self._points)))
-        tree = cKDTree(_apart(places, views), balanced_tree=False, compact_nodes=False)
-        near = tree.query(_apart(self._points[own], self._views[own]), k=_NEIGHBORS)[1]
-        back = np.empty(len(own), dtype=np.int64)
-        outline_kernels.match_outlines(self._points[own], self._normals[own], places, facing, near, _ACROSS, back)
-        self._add(back, places, own, views, every, weight / len(own), width, metrics, forces)
-        return OutlinePulls(faces[some], weights[some], metrics, forces)
+        places = _places(trace.pixels[some], trace.normals[some], trace.size)
+        starts = np.searchsorted(views, np.arange(len(self._starts)))
+        metrics, forces = np.zeros((len(faces), 3, 3)), np.zeros((len(faces), 3))
+        spacing = _SPACING_PIXELS * 2.0 * WINDOW / trace.size * every
 
-    def _add(
-        self,
-        rows: Int[np.ndarray, " K"],
-        places: Float[np.ndarray, "N 2"],
-        own: Int[np.ndarray, " K"],
-        views: Int[np.ndarray, " N"],
-        every: int,
-        share: float,
-        width: float,
-        metrics: Float[np.ndarray, "N 3 3"],
-        forces: Float[np.ndarray, "N 3"],
-    ) -> None:
-        """Add pairs of a sample of the instance and a point of the query's outline; those of two views pull nothing."""
-        same = views[rows] == self._views[own]
-        rows, own = rows[same], own[same]
-        outline_kernels.add_outline_pairs(
-            rows, places[rows] - self._points[own], self._normals[own], self._views[own], PASS_FRAMES,
-            _SPACING_PIXELS * self._pixel * every, width, share, metrics, forces,
-        )  # fmt: skip
+        def add(rows: Int[np.ndarray, " K"], own: Int[np.ndarray, " K"]) -> None:
+            outline_kernels.add_outline_pairs(
+                rows, places, own, self._places, views, PASS_FRAMES, spacing, width, weight / len(rows), metrics, forces
+            )
+
+        chosen = np.empty(len(faces), dtype=np.int64)
+        outline_kernels.match_outlines(places, starts, self._places, self._starts, _ACROSS, chosen)
+        add(np.arange(len(faces)), chosen)
+        own, own_starts = self._some(count)
+        chosen = np.empty(len(own), dtype=np.int64)
+        own_places = np.ascontiguousarray(self._places[:, own])
+        outline_kernels.match_outlines(own_places, own_starts, places, starts, _ACROSS, chosen)
+        add(chosen, own)
+        return OutlinePulls(faces, trace.weights[some], metrics, forces)
+
+    def _some(self, count: int) -> tuple[Int[np.ndarray, " M"], Int[np.ndarray, " K"]]:
+        """Choose about so many points, the same share of each view."""
+        share = min(1.0, count / self._starts[-1])
+        counts = np.ceil(share * np.diff(self._starts)).astype(np.int64)
+        first = self._starts[:-1]
+        chosen = [np.arange(begin, begin + some) for begin, some in zip(first, counts, strict=True)]
+        return np.concatenate(chosen), np.concatenate([[0], np.cumsum(counts)])
 
 
-def _apart(points: Float[np.ndarray, "N 2"], views: Int[np.ndarray, " N"]) -> Float[np.ndarray, "N 3"]:
-    return np.column_stack([points, _APART * views])
+def _places(pixels: Int[np.ndarray, "N 2"], normals: Float[np.ndarray, "N 2"], size: int) -> Float[np.ndarray, "4 N"]:
+    return np.ascontiguousarray(np.concatenate([pixels.T * (2.0 * WINDOW / size), normals.T]))

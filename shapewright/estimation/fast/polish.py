@@ -6,14 +6,14 @@ the surface by as much, and what trades against each other (lengths and the scal
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from shapewright.estimation.fast.candidate import Candidate
-from shapewright.estimation.fast.measure import outline_distance
-from shapewright.estimation.fast.target import Target
+from shapewright.estimation.fast.measure import drawn
+from shapewright.estimation.fast.target import Target, normalized
 
 FIRST_STEP = 0.01
 """Root mean square move of the surface that each axis begins with, in units of the normalized query."""
@@ -28,12 +28,14 @@ class Polish:
 
     Attributes:
         best: the best so far.
+        sums: its comparison, view by view.
         gain: what the last round won.
         evaluations: how often the distance was measured.
     """
 
     target: Target
     best: Candidate
+    sums: Float[np.ndarray, "7 2"]
     columns: Int[np.ndarray, " D"]
     directions: Float[np.ndarray, "N K"]
     steps: Float[np.ndarray, " K"]
@@ -57,8 +59,11 @@ class Polish:
         directions = _axes(candidate, columns, keeps_scale, keeps_rotation)
         reach = np.abs(directions[: len(columns)]).max(axis=0, initial=1e-9)
         steps = np.minimum(first_step, _LONGEST / reach)
-        measured = outline_distance(target, candidate)
-        return cls(target, measured, columns, directions, steps, np.ones(len(steps)), evaluations=1)
+        points, triangles = drawn(candidate)
+        sums = target.compared(points, triangles)
+        assert sums is not None
+        measured = replace(candidate, zbuffer=normalized(sums))
+        return cls(target, measured, sums, columns, directions, steps, np.ones(len(steps)), evaluations=1)
 
     @property
     def is_done(self) -> bool:
@@ -82,10 +87,11 @@ class Polish:
     def _try(self, axis: int) -> None:
         for sign in (self.signs[axis], -self.signs[axis]):
             step = sign * self.steps[axis] * self.directions[:, axis]
-            candidate = outline_distance(self.target, self.best.moved(self.columns, step, self.target.center))
+            candidate = self.best.moved(self.columns, step, self.target.center)
+            sums = self.target.compared(*drawn(candidate), better_than=self.sums)
             self.evaluations += 1
-            if candidate.zbuffer < self.best.zbuffer:
-                self.best = candidate
+            if sums is not None and normalized(sums) < self.best.zbuffer:
+                self.best, self.sums = replace(candidate, zbuffer=normalized(sums)), sums
                 self.signs[axis] = sign
                 self.steps[axis] *= _GROWS
                 return

@@ -13,13 +13,9 @@ from jaxtyping import Float
 from shapewright.distances.alignment import rotations_24
 from shapewright.estimation.fast.candidate import Candidate
 from shapewright.estimation.fast.fitted_model import COARSE, FittedModel
-from shapewright.estimation.fast.kernels import (
-    align_by_closest_points,
-    place_samples,
-    sample_surface,
-    score_rotations,
-)
+from shapewright.estimation.fast.pose_kernels import align_by_closest_points, score_rotations
 from shapewright.estimation.fast.target import Target, principal_axes
+from shapewright.estimation.sampling_kernels import place_samples, sample_surface
 
 POINTS = 112
 """Samples of the query and of an instance while poses are scored."""
@@ -28,7 +24,8 @@ ROUNDS = 12
 _TURNS: Final = rotations_24()
 _TURNS_KEPT = 3
 """Orientations of an instance that go on to closest points."""
-_OF_ONE_TURN: Final = 2
+OF_ONE_TURN: Final = 4
+_OF_ONE_KIND: Final = 2
 _ONE_TURN_TRACE: Final = 1.0 + 2.0 * float(np.cos(np.radians(40.0)))
 """Trace of the rotation between two orientations that are taken for one."""
 
@@ -81,19 +78,24 @@ def find_starts(
     return candidates[:kept]
 
 
-def spread(candidates: Sequence[Candidate], kept: int, of_each: int) -> list[Candidate]:
+def spread(
+    candidates: Sequence[Candidate], kept: int, of_each: int, *, of_one_turn: int = OF_ONE_TURN
+) -> list[Candidate]:
     """Choose the best of all and the best few of each model, no more than a few of one model in one orientation.
 
     Args:
         candidates: the best first.
         kept: how many to choose of all.
         of_each: how many to choose of each model at least.
+        of_one_turn: how many to choose of one model in one orientation at most; of those with the same options, two.
     """
     chosen: list[Candidate] = []
     counts: dict[int, int] = {}
     for one in candidates:
         count = counts.get(id(one.model), 0)
-        if (len(chosen) < kept or count < of_each) and sum(_alike(one, other) for other in chosen) < _OF_ONE_TURN:
+        alike = [other for other in chosen if _alike(one, other)]
+        same = sum(bool((one.values == other.values)[one.model.is_option].all()) for other in alike)
+        if (len(chosen) < kept or count < of_each) and len(alike) < of_one_turn and same < _OF_ONE_KIND:
             chosen.append(one)
             counts[id(one.model)] = count + 1
     return chosen

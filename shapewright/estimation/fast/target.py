@@ -4,16 +4,18 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy.spatial import cKDTree
 
-from shapewright.distances.depth_kernels import compare_passes
+from shapewright.distances.depth_kernels import compare_and_trace, compare_passes
 from shapewright.distances.rasterize import PASS_FRAMES, prepared
 from shapewright.distances.zbuffer import ZBufferTarget
 from shapewright.errors import MeshError
-from shapewright.estimation.fast.kernels import place_samples, sample_surface
-from shapewright.estimation.fast.outline import TargetOutline
+from shapewright.estimation.fast.outline import MOST_PIXELS, TargetOutline, Trace
+from shapewright.estimation.sampling_kernels import place_samples, sample_surface
 from shapewright.mesh import TriangleMesh
 
 SAMPLES = 12_000
 _AXES_FROM = 4_000
+_GLANCED, _HOPEFUL = 3, 1.02
+"""An instance whose distance in the first few views is larger by this factor is not compared in the others."""
 
 
 class Target:
@@ -64,11 +66,54 @@ class Target:
 
     def zbuffer_distance(self, points: Float[np.ndarray, "V 3"], triangles: Int[np.ndarray, "F 3"]) -> float:
         """Return the normalized z-buffer distance of an instance, computed in the calling thread."""
-        sums = np.empty((len(PASS_FRAMES), 2))
+        sums = self.compared(points, triangles)
+        assert sums is not None
+        return normalized(sums)
+
+    def compared(
+        self,
+        points: Float[np.ndarray, "V 3"],
+        triangles: Int[np.ndarray, "F 3"],
+        better_than: Float[np.ndarray, "7 2"] | None = None,
+    ) -> Float[np.ndarray, "7 2"] | None:
+        """Compare the depth images of an instance with the query's.
+
+        Args:
+            points, triangles: the instance, placed.
+            better_than: the sums of another instance; views that show that this one is farther end the comparison.
+
+        Returns:
+            For each pair of opposite views the raw sum, and the pixels that either covers; ``None`` if it was ended.
+        """
+        sums, first = np.empty((len(PASS_FRAMES), 2)), 0
         views, covered = self._zbuffer.views, self._zbuffer.covered
-        compare_passes(points, triangles, PASS_FRAMES, views, covered, 0, len(PASS_FRAMES), sums)
-        raw, pixels = sums.sum(axis=0)
-        return float(raw / pixels) if pixels else 0.0
+        if better_than is not None:
+            first = _GLANCED
+            compare_passes(points, triangles, PASS_FRAMES, views, covered, 0, first, sums)
+            if normalized(sums[:first]) > _HOPEFUL * normalized(better_than[:first]):
+                return None
+        compare_passes(points, triangles, PASS_FRAMES, views, covered, first, len(sums), sums)
+        return sums
+
+    def traced(self, points: Float[np.ndarray, "V 3"], triangles: Int[np.ndarray, "F 3"]) -> tuple[float, Trace]:
+        """Return the normalized z-buffer distance of an instance, and its outline."""
+        sums = np.empty((len(PASS_FRAMES), 2))
+        size = self._zbuffer.views.shape[1]
+        faces, weights = np.empty(MOST_PIXELS, dtype=np.int64), np.empty((MOST_PIXELS, 3))
+        numbers, pixels = np.empty(MOST_PIXELS, dtype=np.int64), np.empty((MOST_PIXELS, 2), dtype=np.int64)
+        normals = np.empty((MOST_PIXELS, 2))
+        found = compare_and_trace(
+            points, triangles, PASS_FRAMES, self._zbuffer.views, self._zbuffer.covered, sums, faces, weights, numbers,
+            pixels, normals,
+        )  # fmt: skip
+        trace = Trace(size, faces[:found], weights[:found], numbers[:found], pixels[:found], normals[:found])
+        return normalized(sums), trace
+
+
+def normalized(sums: Float[np.ndarray, "K 2"]) -> float:
+    """Return the z-buffer distance of the views whose raw sums and covered pixels are given."""
+    raw, covered = sums.sum(axis=0)
+    return float(raw / covered) if covered else 0.0
 
 
 def principal_axes(vectors: Float[np.ndarray, "N 3"]) -> Float[np.ndarray, "3 3"]:
