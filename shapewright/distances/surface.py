@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy.spatial import cKDTree
 
+from shapewright.distances.elimination_kernel import eliminate
 from shapewright.errors import MeshError
 from shapewright.mesh import TriangleMesh
 
@@ -72,12 +73,7 @@ def _eliminate(points: Float[np.ndarray, "M 3"], count: int, radius: float) -> I
     neighbours, shares = second[order], np.tile(crowding, 2)[order]
     starts = np.searchsorted(first[order], np.arange(len(points) + 1))
     weights = np.bincount(first, weights=np.tile(crowding, 2), minlength=len(points))
-    for _ in range(len(points) - count):
-        gone = int(weights.argmax())
-        span = slice(starts[gone], starts[gone + 1])
-        weights[neighbours[span]] -= shares[span]  # each neighbour occurs once
-        weights[gone] = -np.inf
-    return np.flatnonzero(weights > -np.inf)
+    return np.flatnonzero(eliminate(weights, starts, neighbours, shares, count))
 
 
 class SurfaceDistance:

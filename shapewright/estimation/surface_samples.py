@@ -13,6 +13,7 @@ from jaxtyping import Bool, Float, Int
 
 from shapewright.distances.even_places import even_places
 from shapewright.estimation.generator import InstanceGenerator
+from shapewright.estimation.sampling_kernels import face_areas
 
 LEAST_SAMPLES: Final = 2000
 """On each of the instances that the samples are spread by, the base among them."""
@@ -102,5 +103,6 @@ def _typical_values(generator: InstanceGenerator) -> Float[np.ndarray, "B P"]:
 
 
 def _face_areas(points: Float[np.ndarray, "B V 3"], triangles: Int[np.ndarray, "F 3"]) -> Float[np.ndarray, "B F"]:
-    first, second, third = (points[:, triangles[:, k]] for k in range(3))
-    return np.asarray(np.linalg.norm(np.cross(second - first, third - first), axis=2) / 2.0)
+    areas = np.empty((len(points), len(triangles)))
+    face_areas(points, triangles, areas)
+    return areas
