@@ -7,9 +7,11 @@ a pose that shrinks are the same, so there single lengths are expected to be off
 
 *When a pose is right.* Where the model is right: its rotation is within :data:`ROTATION_DEG` of the true one, or of the
 true one after a rotation that the model declares to leave its instances as they are (a product of its mirrors and turns
-that is a rotation). And the posed instance lies where the true one does: the centers of their bounding boxes, along the
-axes of the true pose, are within :data:`PLACE` of the true box's diagonal, and so are their diagonals. Shift and scale
-themselves are not compared, since a model that grows takes them with it.
+that is a rotation), or the turn between the two leaves the true instance where it is: a stool of three legs has a
+symmetry that other stools have not, and a goblet of twelve sides is round. And the posed instance lies where the true
+one does: the centers of their bounding boxes, along the axes of the true pose, are within :data:`PLACE` of the true
+box's diagonal, and so are their diagonals. Shift and scale themselves are not compared, since a model that grows takes
+them with it.
 """
 
 from dataclasses import dataclass
@@ -20,7 +22,10 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from shapewright.distances.alignment import Pose
+from shapewright.distances.rasterize import prepared
+from shapewright.distances.triangles import TriangleDistance
 from shapewright.estimation.result import ParameterStatus, Ratio
+from shapewright.estimation.sampling_kernels import sample_surface
 from shapewright.evaluation.estimated import Answer
 from shapewright.evaluation.synthetic import Truth
 from shapewright.mesh import TriangleMesh
@@ -31,6 +36,10 @@ ROTATION_DEG: Final = 10.0
 PLACE: Final = 0.05
 CLOSE: Final = 0.05
 """Share of its range by which a value may be off, and of the true ratio by which a ratio may be."""
+_SAME: Final = 0.01
+"""Share of its diagonal by which hardly a point of an instance leaves the surface in a turn that is a symmetry."""
+_HARDLY: Final = 95.0
+_SAMPLES: Final = 1000
 
 
 @dataclass(frozen=True)
@@ -109,8 +118,7 @@ def recover(truth: Truth, answer: Answer) -> Recovery:
         options_all_right=bool(same[options].all()),
         ratios_right=tuple(_offered_ratios(truth, answer.ratios, counted)),
         pose_right=pose_right,
-        pose_offered=pose_right
-        or any(_is_turned_right(model.symmetry, truth.pose, pose) for pose in answer.other_poses),
+        pose_offered=pose_right or any(_is_turned_right(truth, pose) for pose in answer.other_poses),
     )
 
 
@@ -157,7 +165,7 @@ def _offered_ratios(truth: Truth, ratios: tuple[Ratio, ...], counted: Bool[np.nd
 
 def is_pose_right(truth: Truth, answer: Answer) -> bool:
     """Tell whether the posed answer stands, lies and reaches like the truth; see the module for what that means."""
-    if not _is_turned_right(truth.compiled.model.symmetry, truth.pose, answer.pose):
+    if not _is_turned_right(truth, answer.pose):
         return False
     wanted_center, wanted_length = _box(truth.compiled, truth.values, truth.pose, truth.pose)
     center, length = _box(truth.compiled, answer.values, answer.pose, truth.pose)
@@ -175,11 +183,23 @@ def _box(
     return 0.5 * (low + high), float(np.linalg.norm(high - low))
 
 
-def _is_turned_right(symmetry: Symmetry, true: Pose, found: Pose) -> bool:
-    difference = true.rotation.T @ found.rotation
-    traces = np.einsum("nij,ij->n", symmetry_rotations(symmetry), difference)
+def _is_turned_right(truth: Truth, found: Pose) -> bool:
+    difference = truth.pose.rotation.T @ found.rotation
+    traces = np.einsum("nij,ij->n", symmetry_rotations(truth.compiled.model.symmetry), difference)
     angle_deg = np.degrees(np.arccos(np.clip(0.5 * (traces.max() - 1.0), -1.0, 1.0)))
-    return bool(angle_deg <= ROTATION_DEG)
+    return bool(angle_deg <= ROTATION_DEG) or _stays(truth.compiled.instance(truth.values), difference)
+
+
+def _stays(instance: TriangleMesh, turn: Float[np.ndarray, "3 3"]) -> bool:
+    """Tell whether a turn about its center leaves the surface of an instance where it is."""
+    vertices, triangles = prepared(instance.vertices, instance.faces)
+    faces, weights, _ = sample_surface(vertices, triangles, _SAMPLES, 0.5)
+    points = np.einsum("nk,nkd->nd", weights, vertices[triangles[faces]])
+    center = points.mean(axis=0)
+    distance = TriangleDistance(instance)
+    moved = [distance(center + (points - center) @ rotation.T) for rotation in (turn, turn.T)]
+    diagonal = float(np.linalg.norm(np.ptp(points, axis=0)))
+    return float(np.percentile(moved, _HARDLY)) <= _SAME * diagonal
 
 
 def symmetry_rotations(symmetry: Symmetry) -> Float[np.ndarray, "N 3 3"]:
