@@ -36,6 +36,7 @@ from shapewright.estimation.fast.following import follow_surface  # noqa: E402
 from shapewright.estimation.fast.judging import determine_fit  # noqa: E402
 from shapewright.estimation.fast.least_squares import Effort, fit  # noqa: E402
 from shapewright.estimation.fast.measure import fine_distance  # noqa: E402
+from shapewright.estimation.fast.settling import Settling  # noqa: E402
 from shapewright.estimation.fast.target import Target  # noqa: E402
 from shapewright.estimation.prepared_query import PreparedQuery  # noqa: E402
 from shapewright.evaluation.corruptions import CORRUPTIONS  # noqa: E402
@@ -77,7 +78,7 @@ def scores(task: Task) -> list[float]:
     candidate = _near_truth(target, comparison, drawn.truth, task, rng)
     for _ in range(_FITS):
         candidate = fit(target, candidate, _DENSE, keeps_scale=task.known_scale)
-    candidate = follow_surface(target, fine_distance(target, candidate), keeps_scale=task.known_scale)
+    candidate = _ended(target, candidate, task.known_scale)
     found = determine_fit(target, candidate, scale_known=task.known_scale, factors=IntervalFactors(1.0))
     if found is None:
         return []
@@ -85,6 +86,20 @@ def scores(task: Task) -> list[float]:
     columns = [column for column in found.columns if counted[column]]
     errors = np.abs(candidate.values - drawn.truth.values)[columns]
     return [float(score) for score in errors / found.half_widths[columns]]
+
+
+def _ended(target: Target, candidate: Candidate, known_scale: bool) -> Candidate:
+    """End a fit as a search does, but for the options, which stay."""
+    settling = Settling(
+        target,
+        lambda one, effort: fit(target, one, effort, keeps_scale=known_scale),
+        lambda work, candidates: [work(one) for one in candidates],
+        np.random.default_rng(0),
+    )
+    settled = settling.fitted([candidate])[0]
+    if settled.follows:
+        return settling.converged(settled).candidate
+    return follow_surface(target, fine_distance(target, candidate), keeps_scale=known_scale)
 
 
 def _near_truth(
@@ -101,7 +116,7 @@ def _near_truth(
         target.center + turn @ (pose.translation - target.center) + rng.normal(0.0, _SHIFTED, 3),
         pose.scale if task.known_scale else pose.scale * float(np.exp(rng.normal(0.0, _GROWN))),
     )
-    wrong = list(other_choices(candidate)) if task.kind == "wrong option" else []
+    wrong = list(other_choices(candidate, rng)) if task.kind == "wrong option" else []
     return wrong[int(rng.integers(len(wrong)))] if wrong else candidate
 
 

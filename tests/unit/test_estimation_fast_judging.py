@@ -8,7 +8,7 @@ import pytest
 from shapewright.estimation import EstimationSettings, Query
 from shapewright.estimation.determination.factors import IntervalFactors
 from shapewright.estimation.fast.candidate import Candidate
-from shapewright.estimation.fast.deviation import candidate_deviation
+from shapewright.estimation.fast.deviation import candidate_deviation, mutual_deviation
 from shapewright.estimation.fast.fitted_model import FittedModel
 from shapewright.estimation.fast.following import FOLLOWED, SCATTERED, follow_surface
 from shapewright.estimation.fast.judging import determine_fit, measure_sensitivity
@@ -128,9 +128,10 @@ def test_a_query_beyond_the_range_pulls_its_value_to_the_end():
 def test_an_instance_without_area_is_not_judged(glass):
     target, candidate = true_fit(*glass)
     flat = FittedModel(candidate.model.compiled)
-    flat.matrices = {steps: 0.0 * matrix for steps, matrix in candidate.model.matrices.items()}
+    flat.surfaces = {n: replace(rows, entries=0.0 * rows.entries) for n, rows in candidate.model.surfaces.items()}
     assert determine_fit(target, replace(candidate, model=flat), scale_known=True, factors=FACTORS) is None
     assert candidate_deviation(target, replace(candidate, model=flat)) is None
+    assert mutual_deviation(target, replace(candidate, model=flat)) is None
 
 
 def test_the_last_fit_takes_noise_for_noise(noisy):

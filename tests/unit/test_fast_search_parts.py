@@ -10,10 +10,10 @@ from shapewright.errors import Cancelled, MeshError
 from shapewright.estimation.fast.candidate import Candidate
 from shapewright.estimation.fast.fitted_model import FINE, FittedModel
 from shapewright.estimation.fast.least_squares import Effort, fit
-from shapewright.estimation.fast.measure import fine_distance, outline_distance
+from shapewright.estimation.fast.measure import drawn, fine_distance, outline_distance
 from shapewright.estimation.fast.polish import Polish
 from shapewright.estimation.fast.starts import find_starts, spread
-from shapewright.estimation.fast.target import Target
+from shapewright.estimation.fast.target import Target, normalized
 from shapewright.mesh import TriangleMesh
 
 TRUE = np.array([1.3, 0.8, 1.2, 1.0])
@@ -116,7 +116,22 @@ def test_every_model_keeps_starts_of_its_own_and_no_orientation_has_many(model: 
     bad = [replace(other, misfit=0.1 * k) for k in range(1, 6)]
     chosen = spread([*good, *bad], 4, 2)
     assert [one.misfit for one in chosen] == pytest.approx([0.01, 0.02, 0.03, 0.04, 0.1, 0.2])
-    assert len(spread(bad, 4, 2)) == 2  # all have one orientation
+    assert len(spread(bad, 4, 2)) == 2  # all have one orientation, and the same options
+
+
+def test_candidates_of_one_orientation_go_on_with_different_options(model: FittedModel, truth: Candidate) -> None:
+    other = replace(truth, values=model.settle(np.array([1.3, 0.8, 1.2, 0.0])))
+    everything = [replace(one, misfit=0.01 * k) for k in range(1, 4) for one in (truth, other)]
+    assert [one.values[3] for one in spread(everything, 10, 0)] == [1.0, 0.0, 1.0, 0.0]
+    assert len(spread(everything, 10, 0, of_one_turn=1)) == 1
+
+
+def test_a_comparison_ends_where_the_first_views_show_that_it_is_farther(target: Target, truth: Candidate) -> None:
+    near, far = drawn(truth), drawn(replace(truth, translation=truth.translation + 0.3))
+    best, worse = target.compared(*near), target.compared(*far)
+    assert normalized(best) < 0.01 < normalized(worse)
+    assert target.compared(*far, better_than=best) is None
+    np.testing.assert_array_equal(target.compared(*near, better_than=worse), best)
 
 
 # ---------------------------------------------------------------------- least squares

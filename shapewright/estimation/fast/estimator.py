@@ -13,7 +13,7 @@ from shapewright.estimation.comparison import Comparison
 from shapewright.estimation.determination.factors import IntervalFactors
 from shapewright.estimation.fast.candidate import Candidate
 from shapewright.estimation.fast.fitted_model import FittedModel
-from shapewright.estimation.fast.following import follow_surface
+from shapewright.estimation.fast.following import ROUGHLY, follow_surface
 from shapewright.estimation.fast.judging import determine_fit
 from shapewright.estimation.fast.measure import fine_distance
 from shapewright.estimation.fast.search import Known, Phase, Search
@@ -164,6 +164,10 @@ class _Work:
 
     def _follow(self) -> None:
         number, best = self._best_of_models()[0]
+        settled = self.search.settled
+        if settled is not None and best.zbuffer > settled.zbuffer - ROUGHLY:
+            self._followed[self.search.models.index(settled.model)] = settled
+            return
         known = self.search.known[number]
         self._followed[number] = follow_surface(
             self.search.target, best, keeps_scale=known.scale is not None, keeps_rotation=known.keeps_rotation
@@ -177,7 +181,7 @@ class _Work:
             fine = fine_distance(search.target, candidate)
             if number not in found or fine.zbuffer < found[number].zbuffer:
                 found[number] = fine
-        return sorted(found.items(), key=lambda item: item[1].zbuffer)
+        return sorted(found.items(), key=lambda item: (item[0] not in self._followed, item[1].zbuffer))
 
     def _record(self, number: int) -> Record:
         """Return the stages of one model; a later one is no worse than those before it, by depth or by surface."""

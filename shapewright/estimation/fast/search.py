@@ -15,6 +15,7 @@ from shapewright.estimation.fast.least_squares import Effort, fit
 from shapewright.estimation.fast.measure import fine_distance, outline_distance
 from shapewright.estimation.fast.polish import Polish
 from shapewright.estimation.fast.pool import Pool
+from shapewright.estimation.fast.settling import Settled, Settling
 from shapewright.estimation.fast.starts import find_starts, spread
 from shapewright.estimation.fast.target import Target
 
@@ -30,6 +31,8 @@ PURSUED, PURSUED_OF_EACH = 4, 1
 """Candidates that go on after the first fit."""
 BRANCHED: Final = 2
 """Candidates whose options are changed."""
+SETTLED: Final = 2
+"""Candidates that are fitted by surfaces, to see whether their models follow the query."""
 POLISHED: Final = 2
 """Candidates that are polished."""
 
@@ -42,17 +45,17 @@ _FIRST: Final = Effort(
 _GLANCE: Final = Effort(rounds=2, points=300, steps=COARSE, neighbors=3, width=0.05, outline=300)
 _CLOSER: Final = Effort(rounds=8, points=600, steps=COARSE, neighbors=4, outline=600)
 _DENSE: Final = Effort(rounds=8, points=1200, steps=FINE, neighbors=4, damping=1e-4, outline=1000, outline_width=0.05)
-_PURE: Final = Effort(rounds=6, points=2000, steps=FINE, damping=1e-4)
-"""Surfaces alone: where the model can follow the query exactly, outlines only add the noise of pixels."""
-
 _BRANCHINGS: Final = 4
 _CHILDREN: Final = 2
 _GAIN: Final = 1e-4
 _ROUNDS, _ROUND_GAIN = 15, 1e-3
 _WORTH_POLISHING: Final = 1.25
 """Candidates whose z-buffer distance is larger than the best one's by this factor are not polished."""
-_EXACT: Final = 0.06
-"""Z-buffer distance below which surfaces alone are tried, too."""
+_MUCH_FARTHER: Final = (1.5, 0.1)
+"""Candidates whose z-buffer distance after the first fit is larger than the best one's by this factor, and this more,
+are given up."""
+_SOLVED: Final = 0.03
+"""Z-buffer distance below which a fit by surfaces is not polished: pixels are not finer than that."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +85,7 @@ class Search:
         best: the best candidate so far of each phase and model (by its number).
         finished: phases that ran to their end.
         kept: candidates that were fitted with care, for alternatives.
+        settled: the best fit by surfaces, if its model follows the query.
     """
 
     target: Target
@@ -91,6 +95,7 @@ class Search:
     best: dict[tuple[Phase, int], Candidate] = field(default_factory=dict)
     finished: set[Phase] = field(default_factory=set)
     kept: list[Candidate] = field(default_factory=list)
+    settled: Candidate | None = None
 
     def run(self, rng: np.random.Generator) -> None:
         """Search; ``best`` is filled from the first moment on.
@@ -99,6 +104,7 @@ class Search:
             Cancelled: ``report`` raised it.
         """
         self._message, self._fraction, self._rng = "first orientations", 0.0, rng
+        self._settled: Settled | None = None
         with Pool(self._ask) as pool:
             self._pool = pool
             candidates = self._begin(rng)
@@ -106,18 +112,25 @@ class Search:
             candidates = spread(self._fitted(candidates, _SIFT), SIFTED, SIFTED_OF_EACH)
             candidates = self._fitted(candidates, _FIRST)
             self._say(0.4, "closer fits")
-            candidates = self._fitted(spread(candidates, PURSUED, PURSUED_OF_EACH), _CLOSER)
+            candidates = self._fitted(spread(_hopeful(candidates), PURSUED, PURSUED_OF_EACH), _CLOSER)
             self._say(0.5, "other poses")
             candidates = self._turned(candidates)
-            self._say(0.55, "options")
-            leaders = [self._branched(one, _CLOSER, outline_distance) for one in candidates[:BRANCHED]]
-            self.kept += candidates[BRANCHED:]
-            self._say(0.75, "dense fits")
-            candidates = self._fitted(_sorted(leaders), _DENSE)
-            leader = self._branched(candidates[0], _DENSE, fine_distance)
+            self._say(0.55, "surfaces")
+            if not self._settles(candidates[:SETTLED]):
+                self._say(0.6, "options")
+                leaders = spread(candidates, BRANCHED, 0, of_one_turn=1)
+                self.kept += [one for one in candidates if one not in leaders]
+                leaders = [self._branched(one, _CLOSER, outline_distance) for one in leaders]
+                self._say(0.75, "dense fits")
+                candidates = self._fitted(_sorted(leaders), _DENSE)
+                candidates[0] = self._branched(candidates[0], _DENSE, fine_distance)
+                self._settles(candidates[:1])
             self.finished.add("fit")
-            self._say(0.85, "polish")
-            self._polish([leader, *candidates[1:POLISHED]], candidates[POLISHED:])
+            if self.settled is None or self.settled.zbuffer > _SOLVED:
+                self._say(0.85, "polish")
+                if self.settled is not None:
+                    candidates = [self.settled, *candidates]
+                self._settles([self._polish(candidates[:POLISHED], candidates[POLISHED:])])
             self.finished.add("polish")
 
     # ------------------------------------------------------------------ phases
@@ -160,16 +173,13 @@ class Search:
 
     def _fit(self, candidate: Candidate, effort: Effort) -> Candidate:
         known = self.known[self.models.index(candidate.model)]
-        return outline_distance(
+        return fit(
             self.target,
-            fit(
-                self.target,
-                candidate,
-                effort,
-                keeps_scale=known.scale is not None,
-                keeps_rotation=known.keeps_rotation,
-                checkpoint=self._pool.check,
-            ),
+            candidate,
+            effort,
+            keeps_scale=known.scale is not None,
+            keeps_rotation=known.keeps_rotation,
+            checkpoint=self._pool.check,
         )
 
     def _turned(self, candidates: list[Candidate]) -> list[Candidate]:
@@ -181,6 +191,22 @@ class Search:
         closer = self._fitted(hopeful, _CLOSER)
         self.kept += closer
         return _sorted([*candidates, *closer])
+
+    def _settles(self, candidates: Sequence[Candidate]) -> bool:
+        """Settle the options by surfaces, if the model of one of the candidates follows the query."""
+        settling = Settling(self.target, self._fit, self._pool.map, self._rng)
+        found = settling.fitted(candidates)
+        for one in found:
+            self._keep("fit", fine_distance(self.target, one.candidate))
+        if not found or not found[0].follows:
+            return False
+        # options that were settled before stay
+        settled = settling.settle(found[0]) if self._settled is None else settling.converged(found[0])
+        if self._settled is None or settled.distance < self._settled.distance:
+            self._settled = settled
+            self.settled = fine_distance(self.target, settled.candidate)
+            self._keep("fit", self.settled)
+        return True
 
     def _branched(
         self, candidate: Candidate, effort: Effort, measure: Callable[[Target, Candidate], Candidate]
@@ -202,16 +228,13 @@ class Search:
             self._keep("fit", candidate)
         return candidate
 
-    def _polish(self, candidates: Sequence[Candidate], others: Sequence[Candidate]) -> None:
-        leader = candidates[0]
-        if leader.zbuffer < _EXACT:
-            pure = fine_distance(self.target, self._fit(leader, _PURE))
-            candidates = _sorted([pure, fine_distance(self.target, leader), *candidates[1:]])
+    def _polish(self, candidates: Sequence[Candidate], others: Sequence[Candidate]) -> Candidate:
         limit = _WORTH_POLISHING * candidates[0].zbuffer
         polished = self._pool.map(self._polished, [one for one in candidates if one.zbuffer <= limit])
         self.kept += [*polished, *others]
         for one in polished:
             self._keep("polish", one)
+        return _sorted(polished)[0]
 
     def _polished(self, candidate: Candidate) -> Candidate:
         known = self.known[self.models.index(candidate.model)]
@@ -244,6 +267,12 @@ class Search:
         distance = min((one.zbuffer for one in list(self.best.values())), default=None)
         known = "" if distance is None else f", z-buffer distance {distance:.4f}"
         self.report(self._fraction, self._message + known)
+
+
+def _hopeful(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Leave out what is much farther than the nearest one; they are sorted."""
+    factor, more = _MUCH_FARTHER
+    return [one for one in candidates if one.zbuffer <= factor * candidates[0].zbuffer + more]
 
 
 def _sorted(candidates: Iterable[Candidate]) -> list[Candidate]:
