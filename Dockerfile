@@ -33,13 +33,15 @@ RUN apt-get update \
     && apt-get install -y --no-install-recommends libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri libgles2 \
     && rm -rf /var/lib/apt/lists/* \
     && useradd --uid 10001 --user-group --create-home shapewright \
-    && install -d -o shapewright -g shapewright /data
+    && install -d -o shapewright -g shapewright /data /opt/numba
 COPY --from=packages /opt/shapewright /opt/shapewright
 ENV PATH=/opt/shapewright/bin:$PATH \
     PYTHONUNBUFFERED=1 \
-    NUMBA_CACHE_DIR=/tmp/numba \
+    NUMBA_CACHE_DIR=/opt/numba \
     SHAPEWRIGHT_DATA_DIR=/data
 USER shapewright
+# kernels compiled for the processor that builds the image; another kind compiles its own when they are first called
+RUN python -m shapewright.estimation.fast.warm_up
 WORKDIR /data
 VOLUME /data
 EXPOSE 8000

@@ -54,6 +54,8 @@ _WORTH_POLISHING: Final = 1.25
 _MUCH_FARTHER: Final = (1.5, 0.1)
 """Candidates whose z-buffer distance after the first fit is larger than the best one's by this factor, and this more,
 are given up."""
+_SURE: Final = 1e-3
+"""Mean distance between surfaces, in half extents, below which options that were settled stay."""
 _SOLVED: Final = 0.03
 """Z-buffer distance below which a fit by surfaces is not polished: pixels are not finer than that."""
 
@@ -200,8 +202,8 @@ class Search:
             self._keep("fit", fine_distance(self.target, one.candidate))
         if not found or not found[0].follows:
             return False
-        # options that were settled before stay
-        settled = settling.settle(found[0]) if self._settled is None else settling.converged(found[0])
+        again = self._settled is not None and self._settled.distance < _SURE
+        settled = settling.converged(found[0]) if again else settling.settle(found[0])
         if self._settled is None or settled.distance < self._settled.distance:
             self._settled = settled
             self.settled = fine_distance(self.target, settled.candidate)
