@@ -82,7 +82,6 @@ def _declare(recorder: Recorder) -> None:
         body_length=(0.7, 1.6, 0.195),
         body_width=(0.6, 1.4, 0.124),
         body_height=(0.6, 1.35, 0.132),
-        body_pitch=(0.0, 2.2, PITCH_DEG),
         neck_length=(0.5, 4.0, 0.065),
         neck_thickness=(0.5, 1.15, 1.0),
         neck_raise=(-0.3, 2.4, RAISE_DEG),
@@ -110,6 +109,7 @@ def _declare(recorder: Recorder) -> None:
     declare(
         recorder,
         (when("legs", 1),),
+        body_pitch=(0.0, 2.2, PITCH_DEG),  # without legs a turn of the whole bird
         leg_length=(0.35, 2.2, LEG.length),
         leg_thickness=(0.7, 2.0, 1.0),
         leg_swing=(-4.0, 4.0, LEG_SWING_DEG),

@@ -76,7 +76,6 @@ def _declare(recorder: Recorder) -> None:
         body_length=(0.7, 1.4, 0.35),
         body_width=(0.65, 1.4, 0.21),
         body_height=(0.65, 1.4, 0.19),
-        body_pitch=(-1.0, 4.0, PITCH_DEG),
         neck_length=(0.4, 3.4, 0.155),
         neck_thickness=(0.6, 1.3, 1.0),
         neck_raise=(0.3, 1.6, RAISE_DEG),
@@ -100,6 +99,7 @@ def _declare(recorder: Recorder) -> None:
     declare(
         recorder,
         (when("legs", 1),),
+        body_pitch=(-1.0, 4.0, PITCH_DEG),  # without legs a turn of the whole bird
         leg_length=(0.5, 1.6, LEG.length),
         leg_thickness=(0.7, 1.6, 1.0),
         leg_swing=(-3.0, 4.0, LEG_SWING_DEG),
