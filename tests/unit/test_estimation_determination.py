@@ -55,9 +55,20 @@ def test_a_box_has_determined_ratios_and_with_a_known_scale_determined_lengths()
         assert 0.9 * linear.values[column] < low < linear.values[column] < high < 1.1 * linear.values[column]
 
 
+def test_a_length_and_a_mere_factor_have_no_ratio():
+    def build(recorder):
+        recorder.parameter("length", "Length", 0.5, 2.0, unit="m", base_value=1.0)
+        recorder.parameter("width", "Width", 0.5, 2.0)
+        whole = group(recorder.box(1.0, 2.0, 3.0).whole, frame="world")
+        recorder.scale(whole, 1.0, "u", size="length")
+        recorder.scale(whole, 1.0, "vz", size="width")
+
+    assert judged(linearized(boxes(build), [1.2, 0.8])).ratios == ()
+
+
 def test_lengths_without_a_unit_are_told_by_how_the_model_grows():
     def build(recorder):
-        recorder.parameter("side", "Side", 0.5, 2.0)
+        recorder.parameter("side", "Side", 0.5, 2.0, base_value=1.5)
         recorder.parameter("thick", "Thickness (of the side)", 0.5, 2.0, base_value=0.5)
         recorder.parameter("height", "Height", 0.5, 2.0, base_value=3.0)
         recorder.parameter("lean", "Lean (deg)", 0.5, 2.0, base_value=20.0, unit="deg")
