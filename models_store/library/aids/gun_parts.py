@@ -3,12 +3,15 @@
 The muzzle points to +x. Every part hangs on an anchor and reaches a little into the body that bears it.
 """
 
+from collections.abc import Iterable
+
 from models_store.library.aids.beam import beam
 from models_store.library.aids.loft import Loft, Section
 from shapewright.modeling import Component, Mirror, Recorder, Target, group
 
 ROUND = 1.1
 """A control octagon must be wider by this than the round section that it becomes."""
+SCOPE_PLACE = 0.03
 
 
 def tube(
@@ -25,6 +28,15 @@ def tube(
         recorder.extrude(front, -min(profile[-1][1], 0.55 * (profile[-1][0] - profile[0][0])))
         recorder.mark_sharp(front)
     return made
+
+
+def square_off(recorder: Recorder, body: Loft, numbers: Iterable[int], share: float, across: str, size: str) -> None:
+    """Draw the diagonal vertices of octagonal sections away from their centers: an oval becomes a rounded box.
+
+    A share of 1.0 keeps the oval, 1.4 puts the vertices into the corners of the box around it, 1.6 sharpens these.
+    """
+    for number in numbers:
+        recorder.scale(Target(body.rings[number][0][1::2], "world"), share, across, size=size)
 
 
 def trigger_guard(recorder: Recorder, anchor: Target, length: float, height: float, *, along: float = 0.0) -> Component:
@@ -74,7 +86,7 @@ def post(
 
 
 def scope(recorder: Recorder, anchor: Target, length: float, diameter: float, height: float) -> list[Loft]:
-    """A telescopic sight on two mounts, its middle ``height`` above the anchor."""
+    """A telescopic sight on two mounts, its middle ``height`` above the anchor and ``SCOPE_PLACE`` before it."""
     half = length / 2
     profile = [
         (-half, 1.35),
@@ -92,6 +104,9 @@ def scope(recorder: Recorder, anchor: Target, length: float, diameter: float, he
         post(recorder, anchor, (0.12 * length, 0.4 * diameter, low), along=side * 0.25 * half, top=0.9)
         for side in (-1.0, 1.0)
     ]
+    everything = whole(body, *mounts)
+    recorder.drag(everything, rho=SCOPE_PLACE, phi_deg=180.0)
+    recorder.drag(everything, rho=SCOPE_PLACE, length="scope_place")
     raised = [body.component.whole, *(vertex for mount in mounts for vertex in mount.rings[1][0])]
     recorder.drag(group(*raised, frame="world"), spare, height="scope_height")
     return [body, *mounts]

@@ -7,12 +7,13 @@ below on the frame behind it, so cylinder and frame grow together.
 from pathlib import Path
 
 from models_store.library.aids.beam import at, beam, lower, upper
-from models_store.library.aids.gun_parts import components, post, trigger, trigger_guard, tube, whole
+from models_store.library.aids.gun_parts import components, post, square_off, trigger, trigger_guard, tube, whole
 from models_store.library.aids.loft import Loft, Section
 from models_store.library.author import publish
 from shapewright.modeling import Component, ProceduralModel, Recorder, group, when
 
 SHIELD = 0.030  # length of the frame behind the cylinder
+FRAME_DROP = 0.006
 CYLINDER_LENGTH, CYLINDER_DIAMETER = 0.042, 0.040
 CYLINDER_SIDES = 12
 BARREL_LENGTH, BARREL_DIAMETER, BARREL_RISE = 0.110, 0.017, 0.009
@@ -28,12 +29,14 @@ def build() -> ProceduralModel:
         recorder,
         "+x",
         [
-            Section(-0.016, 0.020, 0.020, (0.0, -0.006)),
-            Section(0.006, 0.024, 0.042, (0.0, -0.001)),
+            Section(-0.016, 0.020, 0.020),
+            Section(0.006, 0.024, 0.042, (0.0, 0.005)),
             Section(SHIELD, 0.030, 0.050),
         ],
         crease="all",
     )
+    recorder.scale(shield.body(hinge=0), 1.0, "u", size="frame_length")
+    recorder.drag([*shield.sections(0), *shield.sections(1)], -FRAME_DROP, height="frame_drop")
     cylinder = _cylinder(recorder, shield)
     block = beam(
         recorder,
@@ -72,11 +75,16 @@ def _declare(recorder: Recorder) -> None:
     recorder.parameter(
         "lug_length", "Length of the rod (share of the barrel)", 0.3, 1.3, base_value=0.7, active_when=(when("lug", 1),)
     )
+    recorder.parameter("frame_length", "Frame length behind the cylinder", 0.6, 1.6, kind="length")
+    recorder.parameter(
+        "frame_drop", "Drop of the frame behind the cylinder", -0.5, 3.0, unit="m", base_value=FRAME_DROP
+    )
     recorder.parameter("grip_length", "Grip length", 0.65, 1.5, unit="m", base_value=GRIP_LENGTH)
     recorder.parameter("grip_depth", "Grip depth", 0.75, 1.5, unit="m", base_value=GRIP_DEPTH)
     recorder.parameter("grip_base", "Grip depth at its base (share)", 0.7, 1.5, base_value=1.25)
     recorder.parameter("grip_rake", "Grip rake (deg)", 0.3, 1.75, base_value=GRIP_RAKE_DEG, kind="angle")
     recorder.parameter("grip_bend", "Grip bend (deg)", -1.5, 2.5, base_value=GRIP_BEND_DEG, kind="angle")
+    recorder.parameter("grip_corners", "Corners of the grip's sections, from oval to square", 0.95, 1.6)
     recorder.parameter("grip_width", "Grip width", 0.6, 1.3, unit="m", base_value=GRIP_WIDTH)
     recorder.parameter(
         "guard_length", "Trigger guard length", 0.75, 1.3, active_when=(when("guard", 1),), kind="length"
@@ -149,6 +157,7 @@ def _grip(recorder: Recorder, shield: Loft) -> Loft:
         for place, depth, width in profile
     ]
     grip = beam(recorder, "-z", sections, sides=8, offset=(-0.002, 0.0, 0.004), anchors=lower(recorder, shield, 0, 1))
+    square_off(recorder, grip, range(6), 1.0, "uv", "grip_corners")
     recorder.scale(grip.body(hinge=1), 1.0, "z", size="grip_length")
     recorder.scale(grip.body(), 1.0, "u", size="grip_depth")
     recorder.scale(grip.body(), 1.0, "v", size="grip_width")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from models_store.library.aids.beam import at, beam, lower, upper
 from models_store.library.aids.gun_parts import (
+    SCOPE_PLACE,
     bipod,
     components,
     curved_magazine,
@@ -28,6 +29,7 @@ FORE_LENGTH, FORE_HEIGHT, STOCK_WIDTH = 0.45, 0.046, 0.040
 RECEIVER_LENGTH, RECEIVER_DIAMETER = 0.20, 0.032
 BARREL_LENGTH, BARREL_DIAMETER = 0.52, 0.018
 JACKET_LENGTH = 0.30
+MAGAZINE_PLACE, WRIST_SWELL = 0.03, 0.012
 BOX, CURVED, DRUM = 2, 3, 4
 
 
@@ -50,6 +52,7 @@ def build() -> ProceduralModel:
 
 def _declare(recorder: Recorder) -> None:
     magazine = (when("magazine", BOX, DRUM),)
+    scoped = (when("scope", 2),)
     recorder.choice("magazine", "Magazine", ("inside", "box", "curved", "drum"))
     recorder.choice("scope", "Scope", ("without", "with"))
     recorder.choice("bolt", "Bolt handle", ("with", "without"))
@@ -60,6 +63,7 @@ def _declare(recorder: Recorder) -> None:
     recorder.parameter("butt_height", "Butt height", 0.6, 1.4, unit="m", base_value=BUTT_HEIGHT)
     recorder.parameter("butt_drop", "Drop of the butt (deg)", 0.0, 2.8, base_value=BUTT_DROP_DEG, kind="angle")
     recorder.parameter("wrist_height", "Wrist height", 0.7, 1.4, unit="m", base_value=0.044)
+    recorder.parameter("wrist_swell", "Swell below the wrist", 0.3, 4.0, unit="m", base_value=WRIST_SWELL)
     recorder.parameter("barrel_length", "Barrel length", 0.45, 1.7, unit="m", base_value=BARREL_LENGTH)
     recorder.parameter("fore_length", "Fore-end length", 0.5, 1.5, unit="m", base_value=FORE_LENGTH)
     recorder.parameter("fore_height", "Stock height at the fore-end", 0.7, 1.6, unit="m", base_value=FORE_HEIGHT)
@@ -74,15 +78,17 @@ def _declare(recorder: Recorder) -> None:
     recorder.parameter(
         "magazine_length", "Magazine length or diameter", 0.5, 1.5, unit="m", base_value=0.15, active_when=magazine
     )
+    recorder.parameter(
+        "magazine_place", "Place of the magazine", -1.0, 3.0, unit="m", base_value=MAGAZINE_PLACE, active_when=magazine
+    )
     recorder.parameter("magazine_width", "Magazine width", 0.6, 1.5, unit="m", base_value=0.045, active_when=magazine)
     recorder.parameter("magazine_curve", "Magazine curve", 0.3, 2.4, active_when=(when("magazine", CURVED),))
     recorder.parameter(
-        "scope_length", "Scope length", 0.6, 1.4, unit="m", base_value=0.26, active_when=(when("scope", 2),)
+        "scope_place", "Place of the scope", -1.0, 3.0, unit="m", base_value=SCOPE_PLACE, active_when=scoped
     )
-    recorder.parameter(
-        "scope_diameter", "Scope diameter", 0.7, 1.5, unit="m", base_value=0.030, active_when=(when("scope", 2),)
-    )
-    recorder.parameter("scope_height", "Scope height", 0.0, 2.0, active_when=(when("scope", 2),), kind="length")
+    recorder.parameter("scope_length", "Scope length", 0.6, 1.4, unit="m", base_value=0.26, active_when=scoped)
+    recorder.parameter("scope_diameter", "Scope diameter", 0.7, 1.5, unit="m", base_value=0.030, active_when=scoped)
+    recorder.parameter("scope_height", "Scope height", 0.0, 2.0, active_when=scoped, kind="length")
     recorder.parameter("guard_length", "Trigger guard length", 0.75, 1.5, kind="length")
     recorder.parameter("guard_height", "Trigger guard height", 0.7, 1.3, kind="length")
     recorder.parameter("thickness", "Overall thickness", 0.6, 1.6, kind="length")
@@ -110,6 +116,9 @@ def _butt(recorder: Recorder, fore: Loft) -> Loft:
     recorder.scale(butt.body(hinge=0), 1.0, "u", size="butt_length")
     recorder.scale(butt.sections(2, 3), 1.0, "z", size="butt_height")
     recorder.scale(butt.sections(1), 1.0, "z", size="wrist_height")
+    underside = lower(recorder, butt, 1)
+    recorder.drag(underside, WRIST_SWELL)
+    recorder.drag(underside, -WRIST_SWELL, height="wrist_swell")
     recorder.rotate(butt.beyond(1, hinge=1), -BUTT_DROP_DEG, "v", angle="butt_drop")
     recorder.rotate(butt.beyond(2, hinge=2), BUTT_DROP_DEG / 2, "v", angle="butt_drop")
     return butt
@@ -156,6 +165,9 @@ def _magazines(recorder: Recorder, fore: Loft) -> list[Loft]:
     recorder.scale(box.body(), 1.0, "u", size="magazine_width")
     curved = curved_magazine(recorder, anchor, 0.17, 0.038, 0.024)
     pan = drum(recorder, anchor, 0.15, 0.05)
+    everything = whole(box, curved, pan)
+    recorder.drag(everything, rho=MAGAZINE_PLACE, phi_deg=180.0)
+    recorder.drag(everything, rho=MAGAZINE_PLACE, length="magazine_place")
     for number, name, body in ((BOX, "box", box), (CURVED, "curved", curved), (DRUM, "drum", pan)):
         recorder.part(f"{name} magazine", components(body), present_when=(when("magazine", number),))
     return [box, curved, pan]

@@ -6,7 +6,7 @@ The receiver begins at x = 0. The barrels are sketched one for each kind, at the
 from pathlib import Path
 
 from models_store.library.aids.beam import at, beam, lower, upper
-from models_store.library.aids.gun_parts import components, post, scope, trigger, trigger_guard, tube, whole
+from models_store.library.aids.gun_parts import SCOPE_PLACE, components, post, scope, trigger, trigger_guard, tube, whole
 from models_store.library.aids.loft import Loft, Section
 from models_store.library.author import publish
 from shapewright.modeling import Component, Mirror, ProceduralModel, Recorder, Target, when
@@ -35,7 +35,7 @@ def build() -> ProceduralModel:
 
 
 def _declare(recorder: Recorder) -> None:
-    pump = (when("barrels", PUMP),)
+    pump, scoped = (when("barrels", PUMP),), (when("scope", 2),)
     recorder.choice("barrels", "Barrels", ("over a magazine tube", "over and under", "side by side"))
     recorder.choice("rear", "Stock", ("stock", "pistol grip"))
     recorder.choice("guard", "Trigger guard", ("with", "without"))
@@ -86,12 +86,11 @@ def _declare(recorder: Recorder) -> None:
         "guard_height", "Trigger guard height", 0.75, 1.3, active_when=(when("guard", 1),), kind="length"
     )
     recorder.parameter(
-        "scope_length", "Scope length", 0.5, 1.3, unit="m", base_value=0.22, active_when=(when("scope", 2),)
+        "scope_place", "Place of the scope", -1.0, 3.0, unit="m", base_value=SCOPE_PLACE, active_when=scoped
     )
-    recorder.parameter(
-        "scope_diameter", "Scope diameter", 0.8, 1.6, unit="m", base_value=0.030, active_when=(when("scope", 2),)
-    )
-    recorder.parameter("scope_height", "Scope height", 0.0, 1.6, active_when=(when("scope", 2),), kind="length")
+    recorder.parameter("scope_length", "Scope length", 0.5, 1.3, unit="m", base_value=0.22, active_when=scoped)
+    recorder.parameter("scope_diameter", "Scope diameter", 0.8, 1.6, unit="m", base_value=0.030, active_when=scoped)
+    recorder.parameter("scope_height", "Scope height", 0.0, 1.6, active_when=scoped, kind="length")
     recorder.parameter("thickness", "Overall thickness", 0.6, 1.6, kind="length")
 
 

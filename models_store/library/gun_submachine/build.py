@@ -8,12 +8,14 @@ from pathlib import Path
 
 from models_store.library.aids.beam import at, beam, lower, upper
 from models_store.library.aids.gun_parts import (
+    SCOPE_PLACE,
     bipod,
     components,
     curved_magazine,
     drum,
     post,
     scope,
+    square_off,
     trigger,
     trigger_guard,
     tube,
@@ -26,7 +28,7 @@ from shapewright.modeling import Element, ProceduralModel, Recorder, Target, whe
 RECEIVER_LENGTH, RECEIVER_HEIGHT, WIDTH = 0.24, 0.062, 0.042
 GUARD_LENGTH, HANDGUARD_HEIGHT = 0.20, 0.052
 BARREL_LENGTH, BARREL_DIAMETER = 0.20, 0.017
-GRIP_LENGTH, GRIP_RAKE_DEG = 0.105, 20.0
+GRIP_LENGTH, GRIP_PLACE, GRIP_RAKE_DEG = 0.105, 0.040, 20.0
 MAGAZINE_PLACE = 0.035
 STOCK_LENGTH, STOCK_HEIGHT, STOCK_DROP_DEG = 0.26, 0.115, 2.0
 SOLID, SKELETON, FOLDING, NO_STOCK = 1, 2, 3, 4
@@ -85,6 +87,11 @@ def _declare(recorder: Recorder) -> None:
     )
     recorder.parameter("grip_length", "Grip length", 0.7, 1.3, unit="m", base_value=GRIP_LENGTH)
     recorder.parameter("grip_depth", "Grip depth", 0.7, 1.4, unit="m", base_value=0.038)
+    recorder.parameter("grip_width", "Grip width", 0.6, 1.5, unit="m", base_value=0.032)
+    recorder.parameter(
+        "grip_corners", "Corners of the grip's sections, from oval to square", 0.65, 1.07, base_value=1.5
+    )
+    recorder.parameter("grip_place", "Place of grip and trigger", 0.3, 2.6, unit="m", base_value=GRIP_PLACE)
     recorder.parameter("grip_rake", "Grip rake (deg)", 0.0, 2.0, base_value=GRIP_RAKE_DEG, kind="angle")
     recorder.parameter("magazine_length", "Magazine length or diameter", 0.5, 1.4, unit="m", base_value=0.17)
     recorder.parameter("magazine_width", "Magazine width", 0.6, 1.5, unit="m", base_value=0.055)
@@ -103,6 +110,23 @@ def _declare(recorder: Recorder) -> None:
     recorder.parameter("stock_length", "Stock length", 0.4, 1.4, unit="m", base_value=STOCK_LENGTH, active_when=stocked)
     recorder.parameter("stock_height", "Stock height", 0.6, 1.4, unit="m", base_value=STOCK_HEIGHT, active_when=stocked)
     recorder.parameter(
+        "stock_front",
+        "Height of the solid stock's front (share of its butt)",
+        0.5,
+        1.8,
+        base_value=0.5,
+        active_when=(when("stock", SOLID),),
+    )
+    recorder.parameter(
+        "plate_length",
+        "Length of the butt plate",
+        0.7,
+        6.0,
+        unit="m",
+        base_value=0.024,
+        active_when=(when("stock", SKELETON, FOLDING),),
+    )
+    recorder.parameter(
         "stock_drop", "Drop of the stock (deg)", -1.0, 5.0, base_value=STOCK_DROP_DEG, active_when=stocked, kind="angle"
     )
     recorder.parameter(
@@ -113,6 +137,9 @@ def _declare(recorder: Recorder) -> None:
         unit="m",
         base_value=0.14,
         active_when=(when("above", SCOPE_ON_HANDLE, HANDLE),),
+    )
+    recorder.parameter(
+        "scope_place", "Place of the scope", -1.0, 3.0, unit="m", base_value=SCOPE_PLACE, active_when=scoped
     )
     recorder.parameter("scope_length", "Scope length", 0.5, 1.5, unit="m", base_value=0.22, active_when=scoped)
     recorder.parameter("scope_diameter", "Scope diameter", 0.8, 1.5, unit="m", base_value=0.032, active_when=scoped)
@@ -127,9 +154,10 @@ def _declare(recorder: Recorder) -> None:
 
 def _receiver(recorder: Recorder) -> Loft:
     """Rings: rear, grip, magazine, front."""
-    places = ((0.0, 0.75, 0.004), (0.055, 1.0, 0.0), (0.145, 1.0, 0.0), (RECEIVER_LENGTH, 0.95, 0.0))
+    places = ((0.0, 0.75, 0.004), (0.015, 1.0, 0.0), (0.105, 1.0, 0.0), (RECEIVER_LENGTH, 0.95, 0.0))
     sections = [Section(place, WIDTH, RECEIVER_HEIGHT * share, (0.0, shift)) for place, share, shift in places]
     receiver = beam(recorder, "+x", sections, crease="all")
+    recorder.drag([*receiver.sections(1), *receiver.sections(2)], rho=GRIP_PLACE, length="grip_place")
     recorder.scale(receiver.body(hinge=0), 1.0, "u", size="receiver_length")
     recorder.scale(receiver.body(), 1.0, "z", size="receiver_height")
     return receiver
@@ -166,9 +194,11 @@ def _front(recorder: Recorder, receiver: Loft) -> list[Loft]:
 def _grip(recorder: Recorder, receiver: Loft) -> Loft:
     profile = ((-0.2, 1.1), (0.1, 1.0), (0.5, 0.9), (1.0, 1.1))
     sections = [Section(place * GRIP_LENGTH, 0.038 * share, 0.032) for place, share in profile]
-    grip = beam(recorder, "-z", sections, anchors=lower(recorder, receiver, 1))
+    grip = beam(recorder, "-z", sections, sides=8, anchors=lower(recorder, receiver, 1))
+    square_off(recorder, grip, range(4), 1.5, "uv", "grip_corners")
     recorder.scale(grip.body(hinge=0), 1.0, "z", size="grip_length")
     recorder.scale(grip.body(), 1.0, "u", size="grip_depth")
+    recorder.scale(grip.body(), 1.0, "v", size="grip_width")
     recorder.rotate(grip.body(hinge=0), GRIP_RAKE_DEG, "v", angle="grip_rake")
     return grip
 
@@ -189,11 +219,12 @@ def _stocks(recorder: Recorder, receiver: Loft) -> list[Loft]:
     rear = at(recorder, receiver, 0)
     length, height, width = STOCK_LENGTH, STOCK_HEIGHT, 0.9 * WIDTH
     sections = [
-        Section(-0.02, width, 0.36 * height),
-        Section(0.25 * length, width, 0.5 * height, (0.0, -0.006)),
+        Section(-0.02, width, 0.72 * height),
+        Section(0.25 * length, width, height, (0.0, -0.006)),
         Section(length, width, height, (0.0, -0.030)),
     ]
     solid = beam(recorder, "-x", sections, crease="all", anchors=rear)
+    recorder.scale(solid.sections(0, 1), 0.5, "z", size="stock_front")
     bar = [Section(-0.02, 0.4 * width, 0.18 * height), Section(length, 0.4 * width, 0.16 * height)]
     top = beam(recorder, "-x", bar, crease="all", offset=(0.0, 0.0, 0.006), anchors=rear)
     strut = beam(recorder, "-x", bar, crease="all", offset=(0.0, 0.0, 0.002), anchors=rear)
@@ -205,6 +236,8 @@ def _stocks(recorder: Recorder, receiver: Loft) -> list[Loft]:
         offset=(-length + 0.008, 0.0, 0.0),
         anchors=rear,
     )
+    back = at(recorder, plate, (0, 1), (-1.0, 0.0, 0.0)).elements
+    recorder.scale(_about(plate, back), 1.0, "u", size="plate_length")
     recorder.drag(strut.sections(1), -0.62 * height)
     stocks = [solid, top, strut, plate]
     hinge = rear.elements
