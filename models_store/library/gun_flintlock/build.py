@@ -14,6 +14,7 @@ from shapewright.modeling import Component, ProceduralModel, Recorder, when
 BUTT_LENGTH, BUTT_DEPTH, BUTT_BEND_DEG = 0.150, 0.046, 17.0
 FORE_LENGTH, STOCK_HEIGHT, STOCK_WIDTH = 0.16, 0.034, 0.034
 BARREL_LENGTH, BARREL_DIAMETER = 0.24, 0.020
+LOCK_PLACE = 0.010
 
 
 def build() -> ProceduralModel:
@@ -55,6 +56,9 @@ def _declare(recorder: Recorder) -> None:
     recorder.parameter("muzzle", "Muzzle diameter (share of the barrel)", 0.8, 2.0, base_value=1.0)
     recorder.parameter(
         "lock_height", "Height of the cock", 0.5, 1.6, unit="m", base_value=0.045, active_when=(when("lock", 1),)
+    )
+    recorder.parameter(
+        "lock_place", "Place of the lock", -1.0, 2.5, unit="m", base_value=LOCK_PLACE, active_when=(when("lock", 1),)
     )
     recorder.parameter(
         "guard_length", "Trigger guard length", 0.75, 1.5, active_when=(when("guard", 1),), kind="length"
@@ -129,6 +133,9 @@ def _lock(recorder: Recorder, fore: Loft) -> list[Loft]:
     )
     for body in (cock, frizzen):
         recorder.scale(body.body(hinge=0), 1.0, "z", size="lock_height")
+    everything = whole(plate, cock, frizzen)
+    recorder.drag(everything, rho=LOCK_PLACE, phi_deg=180.0)
+    recorder.drag(everything, rho=LOCK_PLACE, length="lock_place")
     recorder.part("lock", components(plate, cock, frizzen), present_when=(when("lock", 1),))
     return [plate, cock, frizzen]
 

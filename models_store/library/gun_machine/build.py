@@ -14,6 +14,8 @@ from shapewright.modeling import Mirror, ProceduralModel, Recorder, Target, Turn
 BOX_LENGTH, BOX_HEIGHT, BOX_WIDTH = 0.62, 0.14, 0.10
 JACKET_LENGTH, JACKET_DIAMETER = 0.32, 0.060
 BARREL_LENGTH, BARREL_DIAMETER = 0.80, 0.032
+AMMUNITION_LENGTH, AMMUNITION_HEIGHT, AMMUNITION_REACH = 0.20, 0.16, 0.10
+AMMUNITION_PLACE = 0.04
 COLUMN_LENGTH, COLUMN_DIAMETER = 0.75, 0.080
 TRIPOD_LENGTH = 0.80
 COLUMN, TRIPOD, BIPOD = 1, 2, 3
@@ -36,11 +38,12 @@ def build() -> ProceduralModel:
 
 
 def _declare(recorder: Recorder) -> None:
+    fed = (when("ammunition", 1),)
     recorder.choice("mount", "Mount", ("column", "tripod", "bipod"))
     recorder.choice("rear", "Rear", ("two grips", "stock"))
     recorder.choice("ammunition", "Ammunition box", ("with", "without"))
     recorder.choice("sight", "Rear sight", ("with", "without"))
-    recorder.parameter("box_length", "Length of the box", 0.6, 1.4, unit="m", base_value=BOX_LENGTH)
+    recorder.parameter("box_length", "Length of the box", 0.5, 1.4, unit="m", base_value=BOX_LENGTH)
     recorder.parameter("box_height", "Height of the box", 0.6, 1.4, unit="m", base_value=BOX_HEIGHT)
     recorder.parameter("jacket_length", "Length of the barrel jacket", 0.2, 2.2, unit="m", base_value=JACKET_LENGTH)
     recorder.parameter(
@@ -49,6 +52,42 @@ def _declare(recorder: Recorder) -> None:
     recorder.parameter("barrel_length", "Barrel length", 0.5, 1.4, unit="m", base_value=BARREL_LENGTH)
     recorder.limit("barrel_length", minimum=("jacket_length", 0.05, 0.42))
     recorder.parameter("barrel_diameter", "Barrel diameter", 0.7, 1.6, unit="m", base_value=BARREL_DIAMETER)
+    recorder.parameter(
+        "ammunition_length",
+        "Length of the ammunition box",
+        0.4,
+        1.6,
+        unit="m",
+        base_value=AMMUNITION_LENGTH,
+        active_when=fed,
+    )
+    recorder.parameter(
+        "ammunition_height",
+        "Height of the ammunition box",
+        0.5,
+        1.5,
+        unit="m",
+        base_value=AMMUNITION_HEIGHT,
+        active_when=fed,
+    )
+    recorder.parameter(
+        "ammunition_reach",
+        "Reach of the ammunition box to the side",
+        0.5,
+        2.8,
+        unit="m",
+        base_value=AMMUNITION_REACH,
+        active_when=fed,
+    )
+    recorder.parameter(
+        "ammunition_place",
+        "Place of the ammunition box",
+        -1.0,
+        3.5,
+        unit="m",
+        base_value=AMMUNITION_PLACE,
+        active_when=fed,
+    )
     recorder.parameter("rear_length", "Length behind the box", 0.6, 1.6, kind="length")
     recorder.parameter(
         "column_length",
@@ -75,11 +114,12 @@ def _declare(recorder: Recorder) -> None:
         "mount_place",
         "Place of the mount",
         -1.0,
-        1.0,
+        2.2,
         unit="m",
         base_value=0.12,
         active_when=(when("mount", COLUMN, TRIPOD),),
     )
+    recorder.limit("mount_place", maximum=("box_length", -0.2, 2.5))
     recorder.parameter("thickness", "Overall thickness", 0.6, 1.4, kind="length")
 
 
@@ -156,8 +196,13 @@ def _mounts(recorder: Recorder, box: Loft) -> None:
 def _ammunition(recorder: Recorder, box: Loft) -> Loft:
     """A box of cartridges on the left side, which no mirror image has."""
     side = at(recorder, box, 2, (0.0, 1.0, 0.0))
-    sections = [Section(-0.01, 0.20, 0.16), Section(0.10, 0.20, 0.16)]
+    sections = [Section(place, AMMUNITION_LENGTH, AMMUNITION_HEIGHT) for place in (-0.01, AMMUNITION_REACH)]
     belt = beam(recorder, "+y", sections, crease="all", offset=(0.0, 0.0, -0.05), anchors=side)
+    recorder.scale(belt.body(), 1.0, "u", size="ammunition_length")
+    recorder.scale(belt.body(), 1.0, "z", size="ammunition_height")
+    recorder.scale(belt.body(hinge=0), 1.0, "v", size="ammunition_reach")
+    recorder.drag(belt.body(), rho=AMMUNITION_PLACE, phi_deg=180.0)
+    recorder.drag(belt.body(), rho=AMMUNITION_PLACE, length="ammunition_place")
     recorder.part("ammunition box", components(belt), present_when=(when("ammunition", 1),))
     return belt
 

@@ -81,6 +81,7 @@ def _declare(recorder: Recorder) -> None:
     )
     recorder.parameter("grip_length", "Grip length", 0.65, 1.5, unit="m", base_value=GRIP_LENGTH)
     recorder.parameter("grip_depth", "Grip depth", 0.75, 1.5, unit="m", base_value=GRIP_DEPTH)
+    recorder.parameter("grip_top", "Grip depth at its top (share)", 0.6, 1.2, base_value=0.95)
     recorder.parameter("grip_base", "Grip depth at its base (share)", 0.7, 1.5, base_value=1.25)
     recorder.parameter("grip_rake", "Grip rake (deg)", 0.3, 1.75, base_value=GRIP_RAKE_DEG, kind="angle")
     recorder.parameter("grip_bend", "Grip bend (deg)", -1.5, 2.5, base_value=GRIP_BEND_DEG, kind="angle")
@@ -145,8 +146,8 @@ def _barrels(recorder: Recorder, block: Loft) -> list[Loft]:
 
 def _grip(recorder: Recorder, shield: Loft) -> Loft:
     profile = (
-        (-0.22, 0.8, 0.8),
-        (0.0, 0.95, 0.8),
+        (-0.22, 0.84, 0.8),
+        (0.0, 1.0, 0.8),
         (0.3, 0.9, 1.0),
         (0.6, 1.0, 1.05),
         (0.85, 1.15, 1.0),
@@ -161,6 +162,7 @@ def _grip(recorder: Recorder, shield: Loft) -> Loft:
     recorder.scale(grip.body(hinge=1), 1.0, "z", size="grip_length")
     recorder.scale(grip.body(), 1.0, "u", size="grip_depth")
     recorder.scale(grip.body(), 1.0, "v", size="grip_width")
+    recorder.scale(grip.sections(0, 1), 0.95, "u", size="grip_top")
     recorder.scale(grip.sections(4, 5), 1.0, "u", size="grip_base")
     for number in (2, 3):
         recorder.rotate(grip.beyond(number, hinge=number), GRIP_BEND_DEG, "v", angle="grip_bend")
