@@ -37,7 +37,7 @@ def build() -> ProceduralModel:
 
 
 def _declare(recorder: Recorder) -> None:
-    bare, toggle = (when("action", BARE, TOGGLE),), (when("action", TOGGLE),)
+    bare = (when("action", BARE, TOGGLE),)
     recorder.choice("action", "Barrel", ("in a slide", "bare", "bare, with toggle knobs"))
     recorder.choice("hammer", "Hammer", ("outside", "hidden"))
     recorder.choice("sights", "Sights", ("with", "without"))
@@ -60,9 +60,6 @@ def _declare(recorder: Recorder) -> None:
     )
     recorder.parameter(
         "muzzle", "Muzzle diameter (share of the bare barrel)", 0.75, 1.4, base_value=1.15, active_when=bare
-    )
-    recorder.parameter(
-        "knob_diameter", "Diameter of the toggle knobs", 0.6, 1.3, base_value=0.026, unit="m", active_when=toggle
     )
     recorder.parameter("frame_height", "Frame height", 0.6, 1.6, kind="length")
     recorder.parameter("dust_cover", "Frame length before the guard", 0.05, 1.6, unit="m", base_value=DUST_COVER)
@@ -196,9 +193,7 @@ def _knobs(recorder: Recorder, slide: Loft) -> Loft:
     top = upper(recorder, slide, 1).elements
     anchors = [Target(top, "world"), Target(top, "world", (Mirror("y"),))]
     sections = [Section(0.0, 0.026, 0.026), Section(0.012, 0.026, 0.026), Section(0.017, 0.018, 0.018)]
-    knobs = beam(recorder, "+y", sections, sides=8, offset=(0.012, 0.002, 0.0), anchors=anchors)
-    recorder.scale(knobs.body(), 1.0, "uz", size="knob_diameter")
-    return knobs
+    return beam(recorder, "+y", sections, sides=8, offset=(0.012, 0.002, 0.0), anchors=anchors)
 
 
 if __name__ == "__main__":

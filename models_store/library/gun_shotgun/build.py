@@ -6,7 +6,16 @@ The receiver begins at x = 0. The barrels are sketched one for each kind, at the
 from pathlib import Path
 
 from models_store.library.aids.beam import at, beam, lower, upper
-from models_store.library.aids.gun_parts import SCOPE_PLACE, components, post, scope, trigger, trigger_guard, tube, whole
+from models_store.library.aids.gun_parts import (
+    SCOPE_PLACE,
+    components,
+    post,
+    scope,
+    trigger,
+    trigger_guard,
+    tube,
+    whole,
+)
 from models_store.library.aids.loft import Loft, Section
 from models_store.library.author import publish
 from shapewright.modeling import Component, Mirror, ProceduralModel, Recorder, Target, when

@@ -15,7 +15,6 @@ from models_store.library.aids.gun_parts import (
     drum,
     post,
     scope,
-    square_off,
     trigger,
     trigger_guard,
     tube,
@@ -88,10 +87,7 @@ def _declare(recorder: Recorder) -> None:
     recorder.parameter("grip_length", "Grip length", 0.7, 1.3, unit="m", base_value=GRIP_LENGTH)
     recorder.parameter("grip_depth", "Grip depth", 0.7, 1.4, unit="m", base_value=0.038)
     recorder.parameter("grip_width", "Grip width", 0.6, 1.5, unit="m", base_value=0.032)
-    recorder.parameter(
-        "grip_corners", "Corners of the grip's sections, from oval to square", 0.65, 1.07, base_value=1.5
-    )
-    recorder.parameter("grip_place", "Place of grip and trigger", 0.3, 2.6, unit="m", base_value=GRIP_PLACE)
+    recorder.parameter("grip_place", "Place of grip and trigger", 0.4, 2.2, unit="m", base_value=GRIP_PLACE)
     recorder.parameter("grip_rake", "Grip rake (deg)", 0.0, 2.0, base_value=GRIP_RAKE_DEG, kind="angle")
     recorder.parameter("magazine_length", "Magazine length or diameter", 0.5, 1.4, unit="m", base_value=0.17)
     recorder.parameter("magazine_width", "Magazine width", 0.6, 1.5, unit="m", base_value=0.055)
@@ -139,7 +135,7 @@ def _declare(recorder: Recorder) -> None:
         active_when=(when("above", SCOPE_ON_HANDLE, HANDLE),),
     )
     recorder.parameter(
-        "scope_place", "Place of the scope", -1.0, 3.0, unit="m", base_value=SCOPE_PLACE, active_when=scoped
+        "scope_place", "Place of the scope", -0.8, 2.5, unit="m", base_value=SCOPE_PLACE, active_when=scoped
     )
     recorder.parameter("scope_length", "Scope length", 0.5, 1.5, unit="m", base_value=0.22, active_when=scoped)
     recorder.parameter("scope_diameter", "Scope diameter", 0.8, 1.5, unit="m", base_value=0.032, active_when=scoped)
@@ -194,8 +190,7 @@ def _front(recorder: Recorder, receiver: Loft) -> list[Loft]:
 def _grip(recorder: Recorder, receiver: Loft) -> Loft:
     profile = ((-0.2, 1.1), (0.1, 1.0), (0.5, 0.9), (1.0, 1.1))
     sections = [Section(place * GRIP_LENGTH, 0.038 * share, 0.032) for place, share in profile]
-    grip = beam(recorder, "-z", sections, sides=8, anchors=lower(recorder, receiver, 1))
-    square_off(recorder, grip, range(4), 1.5, "uv", "grip_corners")
+    grip = beam(recorder, "-z", sections, anchors=lower(recorder, receiver, 1))
     recorder.scale(grip.body(hinge=0), 1.0, "z", size="grip_length")
     recorder.scale(grip.body(), 1.0, "u", size="grip_depth")
     recorder.scale(grip.body(), 1.0, "v", size="grip_width")
