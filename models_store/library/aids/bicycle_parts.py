@@ -4,6 +4,7 @@ The bicycle drives to +x, its left side is +y. Every part hangs on an axle or tu
 """
 
 import math
+from collections.abc import Sequence
 
 from models_store.library.aids.beam import beam
 from models_store.library.aids.bicycle_skeleton import Skeleton, middle
@@ -14,8 +15,10 @@ from shapewright.modeling.elements import Image
 
 WHEEL_DIAMETER, TYRE = 0.68, 0.040
 TYRE_SIDES = 16
-MANY, SOME, BROAD, DISC, BARE = 1, 2, 3, 4, 5
-WHEELS = ("many spokes", "some spokes", "four broad spokes", "discs", "bare rims")
+SPOKE_REACH = WHEEL_DIAMETER / 2 - 0.6 * TYRE
+MANY, SOME, FOUR, FIVE, DISC, BARE = 1, 2, 3, 4, 5, 6
+WHEELS = ("many spokes", "some spokes", "four broad spokes", "five broad spokes", "discs", "bare rims")
+SPOKE, BROAD_SPOKE = 0.005, 0.022
 FLAT, CITY, DROP = 1, 2, 3
 CHAIN, GUARD = 1, 2
 HANDLEBARS = ("flat", "swept back", "drop")
@@ -24,11 +27,15 @@ HANDLEBARS = ("flat", "swept back", "drop")
 def declare_wheels(recorder: Recorder) -> None:
     """Declare what :func:`wheels` varies."""
     recorder.choice("wheels", "Wheels", WHEELS)
-    recorder.parameter("wheel_diameter", "Wheel diameter", 0.72, 1.1, unit="m", base_value=WHEEL_DIAMETER)
+    recorder.parameter("wheel_diameter", "Wheel diameter", 0.6, 1.1, unit="m", base_value=WHEEL_DIAMETER)
     recorder.parameter("tyre_depth", "Tyre thickness", 0.4, 2.2, unit="m", base_value=TYRE)
-    recorder.parameter("tyre_width", "Tyre width (share of its thickness)", 0.6, 1.4, base_value=1.0)
-    spoked = (when("wheels", MANY, BROAD),)
-    recorder.parameter("spoke_thickness", "Spoke thickness", 0.6, 3.0, unit="m", base_value=0.005, active_when=spoked)
+    recorder.parameter("tyre_width", "Tyre width (share of its thickness)", 0.35, 1.4, base_value=1.0)
+    spoked = (when("wheels", MANY, FIVE),)
+    recorder.parameter("spoke_thickness", "Spoke thickness", 0.15, 2.4, unit="m", base_value=SPOKE, active_when=spoked)
+    broad = (when("wheels", FOUR, FIVE),)
+    for which in ("rear", "front"):
+        label = f"Turn of the {which} wheel (half spaces between spokes)"
+        recorder.parameter(f"{which}_turn", label, 0.0, 2.0, active_when=broad, kind="ratio")
 
 
 def wheels(recorder: Recorder, rear: Loft, front: Loft) -> list[list[Element]]:
@@ -45,14 +52,18 @@ def wheels(recorder: Recorder, rear: Loft, front: Loft) -> list[list[Element]]:
     recorder.scale(cross_sections, 1.0, "uvz", size="tyre_depth")
     recorder.scale([Target((tyre.whole,), "world") for tyre in tyres], 1.0, "v", size="tyre_width")
     made: list[list[Element]] = [[tyre.whole] for tyre in tyres]
-    even = _rods(recorder, hubs, 8, 0.0, 0.005, sides=3)
-    odd = _rods(recorder, hubs, 8, 11.25, 0.005, sides=3)
-    broad = _rods(recorder, hubs, 2, 20.0, 0.022, sides=4)
+    through, single = 2 * SPOKE_REACH, SPOKE_REACH
+    twelve = _spokes(recorder, hubs, [30.0 * i for i in range(6)], through, SPOKE, first_deg=15.0)
+    between = [30.0 * i + extra for i in range(6) for extra in (0.0, 10.0)]
+    more = _spokes(recorder, hubs, between, through, SPOKE, first_deg=25.0)
+    four = _spokes(recorder, hubs, [0.0, 90.0], through, BROAD_SPOKE, turn_deg=45.0, sides=4)
+    five = _spokes(recorder, hubs, [72.0 * i for i in range(5)], single, BROAD_SPOKE, turn_deg=36.0, sides=4)
     discs = _discs(recorder, hubs)
     for name, bodies, low, high in (
-        ("spokes", even, MANY, SOME),
-        ("more spokes", odd, MANY, MANY),
-        ("broad spokes", broad, BROAD, BROAD),
+        ("spokes", twelve, MANY, SOME),
+        ("more spokes", more, MANY, MANY),
+        ("four broad spokes", four, FOUR, FOUR),
+        ("five broad spokes", five, FIVE, FIVE),
         ("discs", discs, DISC, DISC),
     ):
         recorder.part(name, bodies, present_when=(when("wheels", low, high),))
@@ -70,19 +81,38 @@ def size_wheels(recorder: Recorder, hubs: tuple[Loft, Loft], wheel_parts: list[l
     recorder.scale(targets, 1.0, "uz", size="wheel_diameter")
 
 
-def _rods(
-    recorder: Recorder, hubs: list[Target], count: int, first_deg: float, thickness: float, *, sides: int
+def _spokes(
+    recorder: Recorder,
+    hubs: list[Target],
+    angles_deg: Sequence[float],
+    length: float,
+    thickness: float,
+    *,
+    first_deg: float = 0.0,
+    turn_deg: float | None = None,
+    sides: int = 3,
 ) -> list[Component]:
-    """Thin prisms from rim to rim through each hub, evenly turned; each is two spokes."""
-    reach = WHEEL_DIAMETER / 2 - 0.6 * TYRE
-    turns: list[Image] = [(Turn("y", 180.0 / count * i),) if i else () for i in range(count)]
+    """Thin prisms from each hub to the rim at these angles from the first.
+
+    Args:
+        angles_deg: begins with 0.
+        length: as far as the rim, or from rim to rim, which makes each two spokes.
+        turn_deg: half the space between two spokes, by which parameters turn those of either wheel; None: none.
+    """
+    turns: list[Image] = [(Turn("y", angle_deg),) if angle_deg else () for angle_deg in angles_deg]
     anchors = [Target(hub.elements, "world", turn) for hub in hubs for turn in turns]
-    size = (thickness, thickness, 2 * reach)
-    rods = recorder.base("prism", size, sides=sides, offset=(0.0, 0.0, -reach), anchors=anchors)
+    offset = (0.0, 0.0, SPOKE_REACH - length)
+    rods = recorder.base("prism", (thickness, thickness, length), sides=sides, offset=offset, anchors=anchors)
     recorder.mark_sharp(*(face for rod in rods for face in rod.faces))
-    wholes = [Target((rod.whole,), "world", anchor.image) for rod, anchor in zip(rods, anchors, strict=True)]
+    pairs = zip(rods, anchors, strict=True)
+    wholes = [Target((rod.whole,), "world", anchor.image, anchor.elements) for rod, anchor in pairs]
     recorder.scale(wholes, 1.0, "uv", size="spoke_thickness")
-    recorder.rotate(wholes, first_deg, "v")
+    if first_deg:
+        recorder.rotate(wholes, first_deg, "v")
+    if turn_deg is None:
+        return rods
+    for targets, which in ((wholes[: len(turns)], "rear"), (wholes[len(turns) :], "front")):
+        recorder.rotate(targets, turn_deg, "v", angle=f"{which}_turn")
     return rods
 
 
@@ -149,8 +179,8 @@ def declare_cranks(recorder: Recorder) -> None:
     """Declare what :func:`cranks` varies."""
     recorder.choice("cranks", "Cranks", ("with", "without"))
     there = (when("cranks", 1),)
-    recorder.parameter("crank_length", "Crank length", 0.6, 1.25, unit="m", base_value=0.17, active_when=there)
-    recorder.parameter("crank_angle", "Crank angle (deg)", 0.0, 4.4, base_value=40.0, active_when=there, kind="angle")
+    recorder.parameter("crank_length", "Crank length", 0.4, 1.25, unit="m", base_value=0.17, active_when=there)
+    recorder.parameter("crank_angle", "Crank angle (deg)", -2.0, 6.8, base_value=40.0, active_when=there, kind="angle")
     recorder.parameter("chainring", "Chainring diameter", 0.6, 1.5, unit="m", base_value=0.18, active_when=there)
 
 
@@ -180,8 +210,8 @@ def cranks(recorder: Recorder, bottom: Loft) -> list[Component]:
 
 def declare_saddle(recorder: Recorder) -> None:
     """Declare what :func:`saddle` varies."""
-    recorder.parameter("saddle_length", "Saddle length", 0.7, 1.4, unit="m", base_value=0.27)
-    recorder.parameter("saddle_width", "Saddle width", 0.5, 1.7, unit="m", base_value=0.15)
+    recorder.parameter("saddle_length", "Saddle length", 0.55, 1.5, unit="m", base_value=0.27)
+    recorder.parameter("saddle_width", "Saddle width", 0.5, 1.9, unit="m", base_value=0.15)
     recorder.parameter("saddle_depth", "Saddle thickness", 0.4, 2.0, unit="m", base_value=0.04)
     recorder.parameter("saddle_tilt", "Saddle tilt (deg)", -2.0, 3.0, base_value=3.0, kind="angle")
 
@@ -249,10 +279,10 @@ def declare_handlebars(recorder: Recorder) -> None:
     recorder.choice("handlebars", "Handlebars", HANDLEBARS)
     recorder.parameter("bar_width", "Handlebar width", 0.6, 1.5, base_value=0.6, unit="m")
     recorder.parameter(
-        "bar_rise", "Handlebar rise", -0.3, 2.0, active_when=(when("handlebars", FLAT, CITY),), kind="length"
+        "bar_rise", "Handlebar rise", -0.3, 4.0, active_when=(when("handlebars", FLAT, CITY),), kind="length"
     )
     recorder.parameter(
-        "bar_sweep", "Handlebar sweep", -0.3, 2.5, active_when=(when("handlebars", FLAT),), kind="length"
+        "bar_sweep", "Handlebar sweep", -0.3, 4.5, active_when=(when("handlebars", FLAT),), kind="length"
     )
     recorder.parameter(
         "bar_sweep_back",
@@ -262,7 +292,16 @@ def declare_handlebars(recorder: Recorder) -> None:
         active_when=(when("handlebars", CITY),),
         kind="length",
     )
-    recorder.parameter("bar_curl", "Curl of the drop handlebars", 0.7, 1.1, active_when=(when("handlebars", DROP),))
+    recorder.parameter("bar_curl", "Curl of the drop handlebars", 0.6, 1.1, active_when=(when("handlebars", DROP),))
+
+
+def declare_transmission(recorder: Recorder) -> None:
+    """Declare what :func:`transmission` varies."""
+    recorder.choice("transmission", "Transmission", ("chain", "chain guard", "without"))
+    there = (when("transmission", GUARD),)
+    recorder.parameter(
+        "guard_height", "Height of the chain guard", 0.25, 1.1, unit="m", base_value=0.2, active_when=there
+    )
 
 
 def transmission(recorder: Recorder, skeleton: Skeleton) -> list[Component]:
@@ -273,6 +312,7 @@ def transmission(recorder: Recorder, skeleton: Skeleton) -> list[Component]:
     ]
     guard = skeleton.tube("bottom", "rear", (0.2, 0.1), side=-0.052, from_start=(0.10, 0.0), sides=4, crease="all")
     recorder.scale(guard.body(), 0.1, "v")
+    recorder.scale(guard.sections(0, 1), 1.0, "z", size="guard_height")
     chain = [component for run in runs for component in run.components]
     recorder.part("chain", chain, present_when=(when("transmission", CHAIN),))
     recorder.part("chain guard", guard.components, present_when=(when("transmission", GUARD),))

@@ -32,9 +32,11 @@ def build() -> ProceduralModel:
     tubes = [
         tube("knee", "seat", TUBE * 1.2),
         tube("bottom", "pivot", TUBE * 1.3),
+        brace,
+    ]
+    stays = [
         tube("pivot", "rear", (0.034, 0.026), spread=(0.026, 0.055)),
         tube("bottom", "rear", 0.022, spread=(0.024, 0.055)),
-        brace,
     ]
     recorder.part("upper tube", brace.components, present_when=(when("frame", 2),))
     recorder.part("shock absorber", shock.components, present_when=(when("shock", 1),))
@@ -43,7 +45,7 @@ def build() -> ProceduralModel:
     frame.skeleton.slide(("pivot",), (0.0, 0.07), "pivot")
     frame.skeleton.slide(("knee",), (-0.02, 0.08), "knee")
     recorder.scale([target for body in beams for target in body.sections(0, 1)], 1.0, "uvz", size="beam")
-    equip(recorder, frame, tubes, guarded=2)
+    equip(recorder, frame, tubes, stays, guarded=2)
     return recorder.build()
 
 

@@ -37,6 +37,8 @@ def build() -> ProceduralModel:
         tube("bottom", "waist", TUBE),
         tube("waist", "seat", TUBE),
         tube("bottom", "low", TUBE * 1.2, from_end=(-0.004, 0.03)),
+    ]
+    stays = [
         tube("bottom", "rear", 0.024, spread=(0.022, 0.052)),
         tube("seat", "rear", 0.022, spread=(0.018, 0.052), from_start=(0.0, -0.02)),
     ]
@@ -44,7 +46,7 @@ def build() -> ProceduralModel:
     frame.skeleton.slide(("high", "stem", "clamp"), (-0.02, 0.13), "frame_height")
     frame.skeleton.slide(("seat", "post"), (-0.02, 0.09), "seat_tube")
     frame.skeleton.slide(("waist",), (-0.022, 0.10), "waist")
-    equip(recorder, frame, tubes, guarded=1)
+    equip(recorder, frame, tubes, stays, guarded=1)
     _basket(recorder, Target(frame.reach.rings[1][0], "world"))
     return recorder.build()
 
