@@ -13,6 +13,9 @@ LEG_SIDES = 4
 KNEE, ANKLE = 2, 4
 """Sections of a leg: root, thigh, knee, shin, ankle, tip."""
 STEEPEST_SHIN_DEG = 107.0
+SWEEP_DEG = 20.0
+PAIR_RAISE_DEG, PAIR_TURN_DEG = 20.0, 25.0
+"""How far a single pair may deviate from what the others do."""
 _PLACES = (0.0, 0.21, 0.42, 0.62, 0.82, 1.0)
 _THICKNESS = (1.15, 1.0, 1.0, 0.85, 0.7, 0.35)
 
@@ -36,10 +39,11 @@ class LegShape:
     ankle_deg: float
     inset: float
     length_range: Range = (0.6, 1.7)
-    thickness_range: Range = (0.4, 2.0)
+    shin_range: Range = (0.6, 1.6)
+    thickness_range: Range = (0.25, 2.4)
     raise_range: Range = (0.0, 1.8)
     knee_range: Range = (0.2, 1.5)
-    ankle_range: Range = (-0.8, 2.0)
+    ankle_range: Range = (-1.2, 2.5)
     spread_range: Range = (0.3, 1.35)
     prefix: str = ""
     label: str = ""
@@ -77,9 +81,20 @@ def hub(body: Loft, number: int) -> Target:
     return Target(body.rings[number][0], "world")
 
 
-def legs(recorder: Recorder, shape: LegShape, stations: Sequence[Station]) -> list[Loft]:
-    """Model pairs of legs, the front one first, and declare their parameters."""
-    _declare(recorder, shape)
+def legs(
+    recorder: Recorder, shape: LegShape, stations: Sequence[Station], *, middle_turn_deg: float | None = None
+) -> list[Loft]:
+    """Model one to four pairs of legs, the front one first, and declare their parameters.
+
+    Args:
+        middle_turn_deg: lets the second of four pairs be absent; by this angle the third turns forwards then, so that
+            the middle legs point sideways.
+    """
+    all_there: tuple[Condition, ...] = ()
+    if middle_turn_deg is not None:
+        recorder.choice("leg_count", "Legs", ("eight legs", "six legs"))
+        all_there = (when("leg_count", 1),)
+    _declare(recorder, shape, several=len(stations) > 1)
     sections = [
         Section(place * shape.length, relative * shape.thickness, relative * shape.thickness)
         for place, relative in zip(_PLACES, _THICKNESS, strict=True)
@@ -88,38 +103,102 @@ def legs(recorder: Recorder, shape: LegShape, stations: Sequence[Station]) -> li
         loft(recorder, "y", sections, sides=LEG_SIDES, offset=(0.0, -shape.inset, 0.0), anchors=station.anchors)
         for station in stations
     ]
+    _sharpen_knees(recorder, pairs)
     name, every = shape.prefix, range(len(sections))
     recorder.scale([t for p in pairs for t in p.sections(*every)], 1.0, "uz", size=f"{name}leg_thickness")
     recorder.scale([t for p in pairs for t in p.sections(1, 3)], 1.0, "uz", size=f"{name}leg_bulge")
     recorder.scale([t for p in pairs for t in p.body(hinge=0)], 1.0, "v", size=f"{name}leg_length")
-    if len(pairs) > 1:
-        for place, pair in (("front", pairs[0]), ("rear", pairs[-1])):
-            label = f"{shape.label}Length of the {place} legs beside the others".capitalize()
-            recorder.parameter(f"{place}_{name}leg_length", label, 0.7, 1.4)
-            recorder.scale(pair.body(hinge=0), 1.0, "v", size=f"{place}_{name}leg_length")
-    _bend(recorder, pairs, 0, shape.raise_deg, f"{name}leg_raise")
-    _bend(recorder, pairs, KNEE, -shape.knee_deg, f"{name}knee_bend")
-    _bend(recorder, pairs, ANKLE, -shape.ankle_deg, f"{name}ankle_bend")
+    recorder.scale([t for p in pairs for t in p.beyond(KNEE, hinge=KNEE)], 1.0, "v", size=f"{name}shin_length")
+    _size_single_pairs(recorder, shape, pairs, all_there)
+    _bend(recorder, pairs, 0, shape.raise_deg, angle=f"{name}leg_raise")
+    _bend(recorder, pairs, KNEE, -shape.knee_deg, angle=f"{name}knee_bend")
+    _bend(recorder, pairs, ANKLE, -shape.ankle_deg, angle=f"{name}ankle_bend")
+    _raise_single_pairs(recorder, shape, pairs, all_there)
     for pair, station in zip(pairs, stations, strict=True):
         if station.heading_deg:
             recorder.rotate(pair.body(hinge=0), -station.heading_deg, "z", angle=f"{name}leg_spread")
-    swept = [t for p in pairs for t in p.body(hinge=0)]
-    recorder.rotate(swept, -20.0, "z")
-    recorder.rotate(swept, 20.0, "z", angle=f"{name}leg_sweep")
+    _turn_single_pairs(recorder, shape, pairs, all_there)
+    if len(pairs) > 1:
+        swept = [t for p in pairs for t in p.body(hinge=0)]
+        recorder.rotate(swept, -SWEEP_DEG, "z")
+        recorder.rotate(swept, SWEEP_DEG, "z", angle=f"{name}leg_sweep")
+    if middle_turn_deg is not None:
+        recorder.part("second pair of legs", components(pairs[1]), present_when=all_there)
+        third = pairs[2].body(hinge=0)
+        recorder.rotate(third, middle_turn_deg, "z")
+        recorder.rotate(third, -middle_turn_deg, "z", angle="leg_count")
     return pairs
 
 
-def _declare(recorder: Recorder, shape: LegShape) -> None:
+def _sharpen_knees(recorder: Recorder, pairs: Sequence[Loft]) -> None:
+    """Keep the edges around the knees sharp, so that thighs and shins stay straight up to them."""
+    for loop in (loop for pair in pairs for loop in pair.rings[KNEE]):
+        ends = zip(loop, (*loop[1:], loop[0]), strict=True)
+        recorder.mark_sharp(*(Element("edge", recorder.mesh.edge_between(a.id, b.id)) for a, b in ends))
+
+
+def _size_single_pairs(
+    recorder: Recorder, shape: LegShape, pairs: Sequence[Loft], all_there: Sequence[Condition]
+) -> None:
+    """Let single pairs be longer or shorter than the others."""
+    for place, pair in _single_pairs(pairs).items():
+        label = f"{shape.label}Length of the {place} legs beside the others".capitalize()
+        name = f"{place}_{shape.prefix}leg_length"
+        recorder.parameter(name, label, 0.5, 1.6, active_when=all_there if place == "third" else ())
+        recorder.scale(pair.body(hinge=0), 1.0, "v", size=name)
+
+
+def _raise_single_pairs(
+    recorder: Recorder, shape: LegShape, pairs: Sequence[Loft], all_there: Sequence[Condition]
+) -> None:
+    """Let the thighs of single pairs rise more or less than those of the others; the shins keep their directions."""
+    for place, pair in _single_pairs(pairs).items():
+        label = f"{shape.label}Rise of the {place} thighs beside the others (deg)".capitalize()
+        name = f"{place}_{shape.prefix}leg_raise"
+        needed = all_there if place == "third" else ()
+        recorder.parameter(name, label, 0.0, 2.5, base_value=PAIR_RAISE_DEG, active_when=needed, kind="angle")
+        _bend(recorder, (pair,), 0, -PAIR_RAISE_DEG)
+        _bend(recorder, (pair,), 0, PAIR_RAISE_DEG, angle=name)
+        _bend(recorder, (pair,), KNEE, PAIR_RAISE_DEG)
+        _bend(recorder, (pair,), KNEE, -PAIR_RAISE_DEG, angle=name)
+
+
+def _single_pairs(pairs: Sequence[Loft]) -> dict[str, Loft]:
+    """Return all pairs but one, for which the parameters of all legs are enough."""
+    names = ((), ("front",), ("front", "rear"), ("front", "third", "rear"))[len(pairs) - 1]
+    numbers = {"front": 0, "third": 2, "rear": -1}
+    return {name: pairs[numbers[name]] for name in names}
+
+
+def _turn_single_pairs(
+    recorder: Recorder, shape: LegShape, pairs: Sequence[Loft], all_there: Sequence[Condition]
+) -> None:
+    """Let the front and the rear pair have directions of their own, as far as spread and sweep do not give them."""
+    single = {"front": (pairs[0], "forwards", -1.0)} if len(pairs) > 2 else {}
+    if len(pairs) > 3:
+        single["rear"] = (pairs[-1], "backwards", 1.0)
+    for place, (pair, way, sign) in single.items():
+        label = f"{shape.label}{place} legs turned {way} (deg)".capitalize()
+        name = f"{place}_{shape.prefix}leg_turn"
+        needed = all_there if place == "rear" else ()
+        recorder.parameter(name, label, 0.0, 2.0, base_value=PAIR_TURN_DEG, active_when=needed, kind="angle")
+        recorder.rotate(pair.body(hinge=0), -sign * PAIR_TURN_DEG, "z")
+        recorder.rotate(pair.body(hinge=0), sign * PAIR_TURN_DEG, "z", angle=name)
+
+
+def _declare(recorder: Recorder, shape: LegShape, *, several: bool) -> None:
     kinds: tuple[tuple[str, str, Range, float | None, ParameterKind | None], ...] = (
         ("leg_length", "leg length", shape.length_range, shape.length, "length"),
+        ("shin_length", "length of the shins beside the thighs", shape.shin_range, None, None),
         ("leg_thickness", "leg thickness", shape.thickness_range, shape.thickness, "length"),
         ("leg_bulge", "leg thickness between the joints", (0.5, 2.0), None, None),
         ("leg_raise", "rise of the thighs (deg)", shape.raise_range, shape.raise_deg, "angle"),
         ("knee_bend", "bend of the knees (deg)", shape.knee_range, shape.knee_deg, "angle"),
         ("ankle_bend", "bend of the ankles (deg)", shape.ankle_range, shape.ankle_deg, "angle"),
         ("leg_spread", "spread of the legs forwards and backwards", shape.spread_range, None, None),
-        ("leg_sweep", "legs turned backwards (deg)", (0.0, 2.0), 20.0, "angle"),
     )
+    if several:
+        kinds += (("leg_sweep", "legs turned backwards (deg)", (0.0, 2.0), SWEEP_DEG, "angle"),)
     for name, label, limits, base_value, kind in kinds:
         recorder.parameter(
             f"{shape.prefix}{name}",
@@ -140,14 +219,16 @@ def _keep_feet_low(recorder: Recorder, shape: LegShape) -> None:
     recorder.limit(f"{shape.prefix}knee_bend", maximum=(f"{shape.prefix}leg_raise", *as_steep))
 
 
-def _bend(recorder: Recorder, pairs: Sequence[Loft], joint: int, angle_deg: float, angle: str) -> None:
+def _bend(recorder: Recorder, pairs: Sequence[Loft], joint: int, angle_deg: float, **varies: str) -> None:
     """Bend legs at a joint, whose section turns by half the angle as a mitre does; the root turns all the way."""
     turned = [t for p in pairs for t in p.beyond(joint, hinge=joint)]
     if joint == 0:
-        recorder.rotate(turned, angle_deg, "u", angle=angle)
+        recorder.rotate(turned, angle_deg, "u", pivot=None, **varies)
         return
-    recorder.rotate(turned, angle_deg / 2, "u", angle=angle)
-    recorder.rotate([t for p in pairs for t in p.beyond(joint + 1, hinge=joint)], angle_deg / 2, "u", angle=angle)
+    recorder.rotate(turned, angle_deg / 2, "u", pivot=None, **varies)
+    recorder.rotate(
+        [t for p in pairs for t in p.beyond(joint + 1, hinge=joint)], angle_deg / 2, "u", pivot=None, **varies
+    )
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,10 @@ from models_store.library.aids.arthropod import (
     flanks,
     hub,
     legs,
-    lift,
     resize,
     tilt,
 )
-from models_store.library.aids.loft import Loft, Section, loft
+from models_store.library.aids.loft import Loft, Section, loft, move
 from models_store.library.author import publish
 from shapewright.modeling import ProceduralModel, Recorder, when
 
@@ -33,6 +32,7 @@ FOREBODY = (
 )
 ABDOMEN_LENGTH, ABDOMEN_WIDTH, ABDOMEN_HEIGHT = 1.35, 1.1, 0.95
 ABDOMEN_OVERLAP = 0.16
+ABDOMEN_LIFT = 0.10
 PALPS = Feelers("palp", "Feeler", 0.75, 0.10, heading_deg=30.0, raise_deg=20.0, curve_deg=50.0)
 FANGS = Feelers("fang", "Jaw", 0.36, 0.16, heading_deg=10.0, raise_deg=-25.0, length_range=(0.6, 1.6))
 
@@ -43,15 +43,10 @@ def build() -> ProceduralModel:
         "spider", "spider", unit_m=0.01, description="A spider with a bulb of an abdomen and jointed legs."
     )
     forebody = loft(recorder, "x", FOREBODY)
-    resize(recorder, forebody, "forebody", "Forebody", ((0.6, 1.5), (0.7, 1.4), (0.6, 1.6)), hinge=2)
+    resize(recorder, forebody, "forebody", "Forebody", ((0.5, 1.5), (0.5, 1.5), (0.5, 1.6)), hinge=2)
     _abdomen(recorder, forebody)
     stations = [Station(flanks(recorder, forebody, 4 - i), heading) for i, heading in enumerate(HEADINGS_DEG)]
-    pairs = legs(recorder, LEGS, stations)
-    recorder.choice("leg_count", "Legs", ("eight legs", "six legs"))
-    recorder.part("second pair of legs", components(pairs[1]), present_when=(when("leg_count", 1),))
-    third = pairs[2].body(hinge=0)  # of six legs the middle ones point sideways
-    recorder.rotate(third, THIRD_PAIR_TURN_DEG, "z")
-    recorder.rotate(third, -THIRD_PAIR_TURN_DEG, "z", angle="leg_count")
+    legs(recorder, LEGS, stations, middle_turn_deg=THIRD_PAIR_TURN_DEG)
     recorder.switch("palps", "Feelers beside the head")
     palps = feelers(
         recorder, PALPS, flanks(recorder, forebody, 5), offset=(-0.15, -0.06, 0.0), active_when=(when("palps", 1),)
@@ -74,7 +69,10 @@ def _abdomen(recorder: Recorder, forebody: Loft) -> None:
     resize(recorder, abdomen, "abdomen", "Abdomen", ((0.5, 2.0), (0.45, 1.8), (0.45, 2.0)), hinge=last)
     recorder.parameter("abdomen_point", "Blunt or pointed end of the abdomen", 0.2, 1.8)
     recorder.scale(abdomen.sections(0, 1), 1.0, "vz", size="abdomen_point")
-    lift(recorder, abdomen, "abdomen_lift", "Abdomen lifted over the forebody", 0.10)
+    recorder.parameter("abdomen_lift", "Abdomen lifted over the forebody", 0.0, 4.0, base_value=ABDOMEN_LIFT, unit="cm")
+    lifted = abdomen.sections(*range(last))  # the front end stays in the forebody
+    move(recorder, lifted, (0.0, 0.0, -ABDOMEN_LIFT))
+    move(recorder, lifted, (0.0, 0.0, ABDOMEN_LIFT), length="abdomen_lift")
     tilt(recorder, abdomen, "abdomen_tilt", "Abdomen raised (deg)", 25.0, hinge=last, up=1.0)
 
 

@@ -35,7 +35,7 @@ def build() -> ProceduralModel:
         "spider_blocky", "spider", unit_m=0.01, description="A spider of few flat faces, with eight legs."
     )
     forebody = beam(recorder, "+x", FOREBODY, crease="all")
-    resize(recorder, forebody, "forebody", "Forebody", ((0.5, 2.0), (0.6, 1.7), (0.5, 1.7)), hinge=2)
+    resize(recorder, forebody, "forebody", "Forebody", ((0.5, 2.0), (0.5, 1.7), (0.5, 1.7)), hinge=2)
     _abdomen(recorder, forebody)
     stations = [Station(flanks(recorder, forebody, 4 - i), heading) for i, heading in enumerate(HEADINGS_DEG)]
     pairs = legs(recorder, LEGS, stations)

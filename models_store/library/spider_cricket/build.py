@@ -32,6 +32,7 @@ HIND_LEGS = LegShape(
     inset=0.12,
     raise_range=(0.3, 1.4),
     knee_range=(0.4, 1.35),
+    spread_range=(0.1, 1.6),
     prefix="hind_",
     label="hind ",
 )
