@@ -24,7 +24,7 @@ SCATTERED: Final = 0.45
 16 neighbors is off on its own, 0.36 in fits to instances with noise, 0.6 and more in fits to real meshes."""
 ROUGHLY: Final = 0.01
 """Z-buffer distances that differ by less do not decide between two fits whose surfaces are compared."""
-_MOST_DEPTH: Final = (2.0, 0.05)
+_MOST_DEPTH: Final = (1.25, 0.03)
 """A fit whose z-buffer distance is larger than this factor times the former one, and this more, has lost its query."""
 _SURFACES: Final = Effort(rounds=12, points=2000, steps=FINE, damping=1e-4)
 
