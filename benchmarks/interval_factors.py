@@ -22,7 +22,6 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 import numpy as np  # noqa: E402 - the number of threads is read when numpy loads
 from scipy.spatial.transform import Rotation  # noqa: E402
-from shapewright.evaluation.in_processes import in_processes  # noqa: E402
 
 from models_store.library.shipped import list_shipped, load_shipped  # noqa: E402
 from shapewright.errors import ShapewrightError  # noqa: E402
@@ -42,6 +41,7 @@ from shapewright.estimation.prepared_query import PreparedQuery  # noqa: E402
 from shapewright.evaluation.corruptions import CORRUPTIONS  # noqa: E402
 from shapewright.evaluation.recovery import comparable  # noqa: E402
 from shapewright.evaluation.synthetic import Truth, draw_query  # noqa: E402
+from shapewright.in_processes import in_processes  # noqa: E402
 from shapewright.modeling import CompiledModel, compile_model  # noqa: E402
 
 KINDS: Final = ("clean", "noise", "clean", "holes", "clean", "decimated", "clean", "wrong option")
