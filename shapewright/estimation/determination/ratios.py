@@ -44,7 +44,7 @@ def find_ratios(
     range_of_ratio = (relative[:, None] + relative[None, :]) / 2.0
     determined = is_determined((range_of_ratio / np.sqrt(of_ratio)).reshape(-1), deviation).reshape(of_ratio.shape)
     determined &= deviation * np.sqrt(of_ratio) <= WIDEST_RATIO
-    measured = np.array([parameters[column].base_value is not None for column in columns])
+    measured = np.array([parameters[column].base_value is not None for column in columns.tolist()])
     determined &= measured[:, None] == measured[None, :]  # a length and a factor have no ratio
     np.fill_diagonal(determined, val=False)
     spread = np.array(
