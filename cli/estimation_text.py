@@ -38,7 +38,7 @@ def print_estimation(console: "Console", document: Mapping[str, Any], *, seconds
     if not document["complete"]:
         console.print("[yellow]The search was stopped before its end. This is the best that it had found.[/]")
     console.print(f"[bold]{name}[/] rebuilds the mesh with these parameters:")
-    console.print(parameter_table(document["parameters"]))
+    console.print(parameter_table(document["parameters"], width=console.width))
     for lines in (_explanations, _ratios, _combinations, _alternatives, _tried, _verdict):
         for line in lines(document):
             console.print(line)

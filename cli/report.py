@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from shapewright.modeling import Condition, ProceduralModel, Symmetry
 
 BAR_CELLS = 14
+ALL_COLUMNS_WIDTH = 125
+"""Characters of a line from which on all columns of an estimation have room."""
 
 
 STATUS_TEXTS = {
@@ -20,13 +22,14 @@ STATUS_TEXTS = {
 }
 
 
-def parameter_table(parameters: Iterable[Mapping[str, Any]]) -> "Table":
+def parameter_table(parameters: Iterable[Mapping[str, Any]], *, width: int = ALL_COLUMNS_WIDTH) -> "Table":
     """Return a table of estimated parameters: label, measure or option, x, range, and where x lies in its range.
 
     If an estimator judges, there are columns of what it says: where the value lies with a probability of 90 %, and
-    whether the mesh determines it.
+    whether the mesh determines it. A narrow table leaves the range out then, and x where there is a measure.
 
     Args:
+        width: characters of a line.
         parameters: mappings with ``label``, ``unit``, ``value`` (x), ``base_value``, ``minimum``, ``maximum``,
             ``option`` and ``active``, perhaps with ``status`` and ``interval``.
     """
@@ -36,9 +39,11 @@ def parameter_table(parameters: Iterable[Mapping[str, Any]]) -> "Table":
     listed = list(parameters)
     judged = any(parameter.get("status") for parameter in listed)
     verdicts = ("90 % interval", "known") if judged else ()
-    table = Table("parameter", "measure", *verdicts, "x", "range of x", "in the range")
+    narrow = judged and width < ALL_COLUMNS_WIDTH
+    table = Table("parameter", "measure", *verdicts, *(() if narrow else ("x", "range of x", "in the range")))
     for column in table.columns[1:]:
         column.no_wrap = True
+    kept = len(table.columns)
     for parameter in listed:
         label = escape(parameter["label"])
         if not parameter["active"]:
@@ -47,13 +52,17 @@ def parameter_table(parameters: Iterable[Mapping[str, Any]]) -> "Table":
         known = (_interval_text(parameter), STATUS_TEXTS.get(parameter.get("status") or "", "")) if judged else ()
         value, low, high = parameter["value"], parameter["minimum"], parameter["maximum"]
         if parameter["option"] is not None:
-            table.add_row(label, escape(parameter["option"]), *known, f"{value:g}", f"{low:g} … {high:g}", "")
+            cells = (label, escape(parameter["option"]), *known, f"{value:g}", f"{low:g} … {high:g}", "")
+            table.add_row(*cells[:kept])
             continue
         base = parameter["base_value"]
         measure = "" if base is None else escape(f"{value * base:.4g} {parameter['unit'] or ''}".strip())
+        if narrow and base is None:
+            measure = f"{value:.3f}"
         bar = position_bar(value, low, high)
         style = "dim" if parameter.get("status") == "not_determined" else None
-        table.add_row(label, measure, *known, f"{value:.3f}", f"{low:.3g} … {high:.3g}", bar, style=style)
+        cells = (label, measure, *known, f"{value:.3f}", f"{low:.3g} … {high:.3g}", bar)
+        table.add_row(*cells[:kept], style=style)
     return table
 
 

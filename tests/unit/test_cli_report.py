@@ -7,8 +7,8 @@ from rich.console import Console
 from cli.report import parameter_table, position_bar, probability_table
 
 
-def _text(table: object) -> str:
-    console = Console(file=io.StringIO(), width=120)
+def _text(table: object, width: int = 125) -> str:
+    console = Console(file=io.StringIO(), width=width)
     console.print(table)
     assert isinstance(console.file, io.StringIO)
     return console.file.getvalue()
@@ -42,6 +42,20 @@ def test_an_option_has_its_name_and_what_means_nothing_is_inactive() -> None:
     assert "●" not in option
     assert "inactive" in inactive
     assert "1.000" not in inactive
+
+
+def test_names_and_verdicts_have_room_on_a_narrow_screen() -> None:
+    known = {"status": "determined_up_to_scale", "interval": [1.03, 7.48]}
+    rows = [
+        _row("Lower bowl width (relative to the belly)", 1.04, 0.8, 2.0, **known),
+        _row("Bowl depth", 2.15, 0.3, 2.2, unit="cm", base_value=4.0, **known),
+        _row("Foot", 1.0, 0.0, 1.0, option="with"),
+    ]
+    narrow = _text(parameter_table(rows, width=80), 80)
+    for text in ("Lower bowl width", "1.040", "8.6 cm", "4.12 … 29.9 cm", "up to scale", "with"):
+        assert text in narrow
+    assert "range of x" not in narrow
+    assert "range of x" in _text(parameter_table(rows, width=125))
 
 
 def test_the_bar_shows_where_a_value_lies() -> None:
