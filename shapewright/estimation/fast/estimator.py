@@ -164,7 +164,7 @@ class _Work:
 
     def _follow(self) -> None:
         number, best = self._best_of_models()[0]
-        settled = self.search.settled
+        settled = None if self.search.settled is None else self.search.settled.candidate
         if settled is not None and best.zbuffer > settled.zbuffer - ROUGHLY:
             self._followed[self.search.models.index(settled.model)] = settled
             return

@@ -1,7 +1,7 @@
 """The search of the fast estimator: from many starts to one polished answer, with the best so far at any moment."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
 import numpy as np
@@ -97,7 +97,7 @@ class Search:
     best: dict[tuple[Phase, int], Candidate] = field(default_factory=dict)
     finished: set[Phase] = field(default_factory=set)
     kept: list[Candidate] = field(default_factory=list)
-    settled: Candidate | None = None
+    settled: Settled | None = None
 
     def run(self, rng: np.random.Generator) -> None:
         """Search; ``best`` is filled from the first moment on.
@@ -106,7 +106,6 @@ class Search:
             Cancelled: ``report`` raised it.
         """
         self._message, self._fraction, self._rng = "first orientations", 0.0, rng
-        self._settled: Settled | None = None
         with Pool(self._ask) as pool:
             self._pool = pool
             candidates = self._begin(rng)
@@ -128,10 +127,10 @@ class Search:
                 candidates[0] = self._branched(candidates[0], _DENSE, fine_distance)
                 self._settles(candidates[:1])
             self.finished.add("fit")
-            if self.settled is None or self.settled.zbuffer > _SOLVED:
+            if self.settled is None or self.settled.candidate.zbuffer > _SOLVED:
                 self._say(0.85, "polish")
                 if self.settled is not None:
-                    candidates = [self.settled, *candidates]
+                    candidates = [self.settled.candidate, *candidates]
                 self._settles([self._polish(candidates[:POLISHED], candidates[POLISHED:])])
             self.finished.add("polish")
 
@@ -202,12 +201,11 @@ class Search:
             self._keep("fit", fine_distance(self.target, one.candidate))
         if not found or not found[0].follows:
             return False
-        again = self._settled is not None and self._settled.distance < _SURE
+        again = self.settled is not None and self.settled.distance < _SURE
         settled = settling.converged(found[0]) if again else settling.settle(found[0])
-        if self._settled is None or settled.distance < self._settled.distance:
-            self._settled = settled
-            self.settled = fine_distance(self.target, settled.candidate)
-            self._keep("fit", self.settled)
+        if self.settled is None or settled.distance < self.settled.distance:
+            self.settled = replace(settled, candidate=fine_distance(self.target, settled.candidate))
+            self._keep("fit", self.settled.candidate)
         return True
 
     def _branched(
