@@ -204,7 +204,7 @@ def compare_passes(points, triangles, frames, query_views, query_covered, first,
 def compare_and_trace(
     points, triangles, frames, query_views, query_covered, sums, faces, weights, views, pixels, normals
 ):
-    """Compare all passes as :func:`compare_passes` does, and find the triangles at the outline of what is drawn.
+    """Compare all passes as :func:`compare_passes` does, and find the triangles at the outline of the drawn object.
 
     A covered pixel beside one that is not covered belongs to the outline. Depth does not matter: whatever covers such a
     pixel ends there.
@@ -276,15 +276,15 @@ def _trace_pass(columns, rows, bounds, triangles, owners, view, found, faces, we
             weights[found, 0], weights[found, 1], weights[found, 2] = 1.0 - wb - wc, wb, wc
             views[found] = view
             pixels[found, 0], pixels[found, 1] = i, j
-            outward(owners, bounds, j, i, normals[found])
+            _outward(owners, bounds, j, i, normals[found])
             found += 1
     return found
 
 
 @njit(cache=True, nogil=True)
 @no_type_check
-def outward(owners, bounds, j, i, out):
-    """Direction from a covered pixel to what is not covered around it, as a unit vector (columns, rows).
+def _outward(owners, bounds, j, i, out):
+    """Fill ``out`` with the unit vector (columns, rows) from a covered pixel towards the uncovered ones around it.
 
     Pixels outside the bounds (first and last column, first and last row) are not covered.
     """
@@ -328,6 +328,6 @@ def trace_mask(owners, pixels, normals):
             if found == pixels.shape[0]:
                 return found
             pixels[found, 0], pixels[found, 1] = i, j
-            outward(owners, bounds, j, i, normals[found])
+            _outward(owners, bounds, j, i, normals[found])
             found += 1
     return found

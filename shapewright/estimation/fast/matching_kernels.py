@@ -90,7 +90,7 @@ def match_to_triangles(
     """Match points with the surface of a mesh: the best of the near samples, then the closest point of its triangle.
 
     Args:
-        points, normals: (N, 3), what is matched.
+        points, normals: (N, 3), the samples to match.
         samples, sample_normals, sample_faces: of the mesh.
         vertices, faces: the mesh.
         near: (N, K) samples that are near each point.

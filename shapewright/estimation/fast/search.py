@@ -270,7 +270,7 @@ class Search:
 
 
 def _hopeful(candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Leave out what is much farther than the nearest one; they are sorted."""
+    """Return those of some sorted candidates that are not much farther than the nearest one."""
     factor, more = _MUCH_FARTHER
     return [one for one in candidates if one.zbuffer <= factor * candidates[0].zbuffer + more]
 
