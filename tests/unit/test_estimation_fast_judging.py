@@ -140,8 +140,9 @@ def test_the_last_fit_takes_noise_for_noise(noisy):
     off = 0.04 * true.model.widths * np.where(np.arange(len(true.values)) % 2, 1.0, -1.0) * ~true.model.is_option
     began = fine_distance(target, replace(true, values=true.model.settle(true.values + off)))
     least = follow_surface(target, began, keeps_scale=True).zbuffer
-    lost = follow_surface(target, replace(began, zbuffer=0.2 * least), keeps_scale=True)
-    assert lost.zbuffer == 0.2 * least, "a fit that is so much farther by depth has lost its query"
+    for share in (0.2, 0.55):  # closest points pull a thin tube to its neighbor, and only depth images show it
+        lost = follow_surface(target, replace(began, zbuffer=share * least), keeps_scale=True)
+        assert lost.zbuffer == share * least, "a fit that is so much farther by depth has lost its query"
     for pretended in (began.zbuffer, 0.7 * least):
         found = follow_surface(target, replace(began, zbuffer=pretended), keeps_scale=True)
         assert found.zbuffer == fine_distance(target, found).zbuffer, "the distance is the real one"

@@ -12,7 +12,7 @@ CHANGE: Final = 0.1
 """Share of a range whose effect is looked at: from 5 % below a value to 5 % above it."""
 LEAST_EFFECT: Final = 5e-4
 """Root mean square movement of the surface, in half extents, that makes such a change count as determined."""
-WIDEST: Final = 0.08
+WIDEST: Final = 0.05
 """Half width of an interval, as a share of the range, above which the residual leaves nothing determined."""
 AT_END: Final = 1e-3
 """A value nearer to an end than this share of the range is at the end."""
