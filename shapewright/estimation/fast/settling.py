@@ -80,7 +80,7 @@ class Settling:
 
     def settle(self, best: Settled) -> Settled:
         """Change options for as long as another choice brings the surfaces clearly nearer to each other."""
-        best = self.converged(best)
+        began = best = self.converged(best)
         hopeless: set[tuple[int, float]] = set()
         for _ in range(_CHANGES):
             choices = [one for one in other_choices(best.candidate, self.rng) if _choice(best, one) not in hopeless]
@@ -96,7 +96,7 @@ class Settling:
             if child.distance > wanted:
                 break
             best = child
-        return self.converged(best)
+        return best if best is began else self.converged(best)
 
     def converged(self, best: Settled) -> Settled:
         """Fit by outlines and surfaces in turns, for as long as that brings the surfaces nearer."""
