@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from shapewright.estimation.fast.candidate import Candidate
 from shapewright.estimation.fast.fitted_model import FINE
-from shapewright.estimation.fast.least_squares import ACROSS, closest, closest_places
+from shapewright.estimation.fast.least_squares import ACROSS, Effort, closest
 from shapewright.estimation.fast.matching_kernels import match_to_triangles
 from shapewright.estimation.fast.target import SAMPLES, Target
 from shapewright.estimation.sampling_kernels import place_samples, sample_surface
@@ -43,7 +43,7 @@ class Deviation:
 
 def measure_deviation(target: Target, placed: Float[np.ndarray, "N 3"], normals: Float[np.ndarray, "N 3"]) -> Deviation:
     """Measure samples of an instance, placed in the space of the query, with their normals there."""
-    along = ((placed - closest_places(target, placed, normals)) * normals).sum(axis=1)
+    along = ((placed - closest(target, placed, normals, Effort.neighbors)[0]) * normals).sum(axis=1)
     near = np.asarray(cKDTree(placed).query(placed, k=[*range(1, min(_NEIGHBORS, len(placed)) + 1)])[1])
     return Deviation(along, _mean_size(along), _mean_size(along[near].mean(axis=1)))
 
@@ -64,7 +64,7 @@ def mutual_deviation(target: Target, candidate: Candidate, count: int = POINTS) 
     placed = np.empty((len(faces), 3))
     place_samples(vertices, triangles, faces, weights, placed)
     some, some_normals = np.ascontiguousarray(placed[::_DENSER]), np.ascontiguousarray(normals[::_DENSER])
-    _, places, place_normals = closest(target, some, some_normals, _AMONG)
+    places, place_normals = closest(target, some, some_normals, _AMONG)
     back = _apart(some - places, place_normals, target.spacing(SAMPLES))
     points = target.points[:count]
     rows = cKDTree(placed, balanced_tree=False, compact_nodes=False).query(points, k=[*range(1, _AMONG + 1)])[1]

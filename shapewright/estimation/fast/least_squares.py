@@ -27,6 +27,8 @@ _FAR = 0.3
 """Distances beyond this count no more in the misfit."""
 _LEAST_WIDTH = 0.01
 _SAMPLED_EVERY = 3
+_SAME_NEIGHBORS = 0.5
+"""Root mean square move of the surface, in spacings of the query's samples, after which neighbors are searched anew."""
 _GAIN, _PATIENCE = 0.003, 1
 """A round gains if its distance falls by this share; with outlines the search ends after more rounds without a gain."""
 _SETTLED = 2e-5
@@ -89,7 +91,8 @@ def fit(
         The best round: of the later half the one with the smallest z-buffer distance if outlines pull, else the last
         one whose misfit is hardly larger than the smallest.
     """
-    samples = None
+    samples, neighbors = None, None
+    drift = 0.0
     best, stale = candidate, 0
     least = movement = np.inf
     for number in range(effort.rounds + 1):
@@ -113,10 +116,14 @@ def fit(
         if number % _SAMPLED_EVERY == 0 or samples is None:
             first_share = (0.5 + 0.618 * number) % 1.0
             samples = candidate.model.samples(around.control, effort.points, effort.steps, first_share)
+            neighbors = None
             if samples is None:
                 break
         made, normals = samples
-        matches = _match(target, candidate, effort, made.points(around.control), normals)
+        placed, normals = _placed(candidate, made.points(around.control), normals)
+        if neighbors is None or drift > _SAME_NEIGHBORS * target.spacing(SAMPLES):
+            neighbors, drift = _Neighbors.find(target, placed, effort), 0.0
+        matches = _match(target, placed, normals, neighbors)
         if not effort.outline:
             candidate = replace(candidate, misfit=matches.misfit)
             least = min(least, candidate.misfit)
@@ -134,6 +141,7 @@ def fit(
         curvature = system.whole()
         step = _bounded_step(candidate, effort, curvature, system.gradient, around, free)
         movement = float(np.sqrt(max(0.0, step @ curvature @ step)))
+        drift += movement
         candidate = candidate.moved(around.columns, step, target.center)
         candidate = replace(candidate, curvature=Curvature(around.columns, curvature))
     return best
@@ -187,25 +195,54 @@ class _Matches:
     median: float
 
 
+@dataclass(frozen=True, eq=False)
+class _Neighbors:
+    """Among which samples pairs are chosen.
+
+    Attributes:
+        there: (N, K) rows of samples of the query that are near each sample of the instance.
+        back: (M, K) rows of samples of the instance near each of the first M samples of the query.
+    """
+
+    there: Int[np.ndarray, "N K"]
+    back: Int[np.ndarray, "M K"]
+
+    @classmethod
+    def find(cls, target: Target, placed: Float[np.ndarray, "N 3"], effort: Effort) -> "_Neighbors":
+        """Search both ways."""
+        return cls(
+            _near(target.tree, placed, effort.neighbors),
+            _near(_tree(placed), target.points[: effort.points], effort.neighbors),
+        )
+
+
+def _tree(points: Float[np.ndarray, "N 3"]) -> cKDTree:
+    return cKDTree(points, balanced_tree=False, compact_nodes=False)
+
+
+def _near(tree: cKDTree, points: Float[np.ndarray, "N 3"], count: int) -> Int[np.ndarray, "N K"]:
+    return np.asarray(tree.query(points, k=[*range(1, min(count, tree.n) + 1)])[1])
+
+
+def _placed(
+    candidate: Candidate, samples: Float[np.ndarray, "N 3"], normals: Float[np.ndarray, "N 3"]
+) -> tuple[Float[np.ndarray, "N 3"], Float[np.ndarray, "N 3"]]:
+    return candidate.placed(samples), np.ascontiguousarray(normals @ candidate.rotation.T)
+
+
 def _match(
-    target: Target,
-    candidate: Candidate,
-    effort: Effort,
-    samples: Float[np.ndarray, "N 3"],
-    normals: Float[np.ndarray, "N 3"],
+    target: Target, placed: Float[np.ndarray, "N 3"], normals: Float[np.ndarray, "N 3"], neighbors: _Neighbors
 ) -> _Matches:
-    count, near = effort.points, effort.neighbors
-    placed = candidate.placed(samples)
-    turned = np.ascontiguousarray(normals @ candidate.rotation.T)
-    there, places, place_normals = closest(target, placed, turned, near)
-    points, point_normals = target.points[:count], target.normals[:count]
-    own_tree = cKDTree(placed, balanced_tree=False, compact_nodes=False)
-    own_distances, own_rows = own_tree.query(points, k=[*range(1, min(near, len(placed)) + 1)])
-    chosen, chosen_normals = np.empty(count, dtype=np.int64), np.empty_like(points)
+    there, back = np.empty(len(placed)), np.empty(len(neighbors.back))
+    points, point_normals = target.points[: len(back)], target.normals[: len(back)]
+    places, place_normals = _on_query(target, placed, normals, neighbors.there)
+    chosen, chosen_normals = np.empty(len(back), dtype=np.int64), np.empty_like(points)
     matching_kernels.match_to_samples(
-        points, point_normals, placed, turned, own_rows, target.spacing(count), ACROSS, chosen, chosen_normals
-    )
-    back = np.asarray(own_distances)[:, 0]
+        points, point_normals, placed, normals, neighbors.back, target.spacing(len(back)), ACROSS, chosen,
+        chosen_normals,
+    )  # fmt: skip
+    matching_kernels.nearest_distances(placed, target.points, neighbors.there, there)
+    matching_kernels.nearest_distances(points, placed, neighbors.back, back)
     misfit = 0.5 * float(np.minimum(there, _FAR).mean() + np.minimum(back, _FAR).mean())
     median = float(np.median(there) + np.median(back))
     return _Matches(
@@ -213,24 +250,22 @@ def _match(
     )
 
 
-def closest_places(
-    target: Target, placed: Float[np.ndarray, "N 3"], normals: Float[np.ndarray, "N 3"]
-) -> Float[np.ndarray, "N 3"]:
-    """Return the places on the query's triangles that samples of an instance belong to."""
-    return closest(target, placed, normals, Effort.neighbors)[1]
-
-
 def closest(
     target: Target, placed: Float[np.ndarray, "N 3"], normals: Float[np.ndarray, "N 3"], near: int
-) -> tuple[Float[np.ndarray, " N"], Float[np.ndarray, "N 3"], Float[np.ndarray, "N 3"]]:
-    """Return the distance to the nearest sample of the query, the place on its triangles, and the normal there."""
-    distances, rows = target.tree.query(placed, k=[*range(1, near + 1)])
+) -> tuple[Float[np.ndarray, "N 3"], Float[np.ndarray, "N 3"]]:
+    """Return the places on the query's triangles that samples of an instance belong to, and the mean normals there."""
+    return _on_query(target, placed, normals, _near(target.tree, placed, near))
+
+
+def _on_query(
+    target: Target, placed: Float[np.ndarray, "N 3"], normals: Float[np.ndarray, "N 3"], rows: Int[np.ndarray, "N K"]
+) -> tuple[Float[np.ndarray, "N 3"], Float[np.ndarray, "N 3"]]:
     places, place_normals = np.empty_like(placed), np.empty_like(placed)
     matching_kernels.match_to_triangles(
         placed, normals, target.points, target.normals, target.faces, target.vertices, target.triangles,
         rows, target.spacing(SAMPLES), ACROSS, places, place_normals,
     )  # fmt: skip
-    return np.asarray(distances)[:, 0], places, place_normals
+    return places, place_normals
 
 
 @dataclass(frozen=True, eq=False)

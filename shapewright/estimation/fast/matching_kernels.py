@@ -119,6 +119,19 @@ def match_to_samples(points, normals, samples, sample_normals, near, spacing, ac
 
 @njit(cache=True, nogil=True)
 @no_type_check
+def nearest_distances(points, others, near, distances):
+    """Fill the distance of each point from the nearest of those of the others that are near it."""
+    for i in range(points.shape[0]):
+        least = np.inf
+        for k in range(near.shape[1]):
+            j = near[i, k]
+            ex, ey, ez = points[i, 0] - others[j, 0], points[i, 1] - others[j, 1], points[i, 2] - others[j, 2]
+            least = min(least, ex * ex + ey * ey + ez * ez)
+        distances[i] = np.sqrt(least)
+
+
+@njit(cache=True, nogil=True)
+@no_type_check
 def _mean_normal(first, second, out):
     """Mean of two normals, turned to the same side; the first where they are at a right angle.
 
