@@ -72,9 +72,10 @@ def scores(task: Task) -> list[float]:
     rng = np.random.default_rng([SEED, task.number, 3])
     corruption = CORRUPTIONS.get(task.kind)
     mesh = drawn.mesh if corruption is None else corruption(drawn.mesh, None, rng)
-    prepared = PreparedQuery(Query(mesh, units=drawn.units), EstimationSettings())
-    comparison = Comparison(prepared, compiled, EstimationSettings())
-    target = Target(prepared.mesh, prepared.zbuffer, rng)
+    settings = EstimationSettings()
+    prepared = PreparedQuery(Query(mesh, units=drawn.units), settings)
+    comparison = Comparison(prepared, compiled, settings)
+    target = Target.of(prepared, settings)
     candidate = _near_truth(target, comparison, drawn.truth, task, rng)
     for _ in range(_FITS):
         candidate = fit(target, candidate, _DENSE, keeps_scale=task.known_scale)

@@ -7,7 +7,6 @@ from typing import Final
 import numpy as np
 from jaxtyping import Float
 
-from shapewright.distances.zbuffer import ZBufferTarget
 from shapewright.errors import Cancelled, EstimationError
 from shapewright.estimation.alternatives import Contender, list_alternatives
 from shapewright.estimation.comparison import Comparison
@@ -20,7 +19,6 @@ from shapewright.estimation.fast.measure import fine_distance
 from shapewright.estimation.fast.search import Known, Phase, Search
 from shapewright.estimation.fast.target import Target
 from shapewright.estimation.generator import InstanceGenerator
-from shapewright.estimation.noise import without_noise
 from shapewright.estimation.prepared_query import PreparedQuery
 from shapewright.estimation.query import Query
 from shapewright.estimation.record import Record, parameter_estimates
@@ -85,7 +83,7 @@ class _Work:
     ) -> None:
         self._prepared = PreparedQuery(query, settings, checkpoint)
         self._comparisons = [Comparison(self._prepared, model, settings) for model in compiled]
-        target = _target(self._prepared, settings, checkpoint)
+        target = Target.of(self._prepared, settings, checkpoint)
         known = [_known(comparison) for comparison in self._comparisons]
         models = [FittedModel(model) for model in compiled]
         self.search = Search(target, models, known, lambda fraction, message: None)
@@ -237,15 +235,6 @@ class _Work:
 
     def _model(self, number: int) -> CompiledModel:
         return self.search.models[number].compiled
-
-
-def _target(prepared: PreparedQuery, settings: EstimationSettings, checkpoint: Callable[[], None]) -> Target:
-    """Return what is searched for: the query, or where it is noisy the smooth surface beneath."""
-    smooth = without_noise(prepared.mesh, checkpoint)
-    zbuffer = prepared.zbuffer
-    if smooth is not prepared.mesh:
-        zbuffer = ZBufferTarget(smooth.vertices, smooth.faces, settings.image_size)
-    return Target(smooth, zbuffer, np.random.default_rng(settings.seed))
 
 
 def _compiled(model: InstanceGenerator, where: str) -> CompiledModel:

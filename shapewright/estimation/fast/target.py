@@ -1,5 +1,7 @@
 """The query prepared for fitting: even samples with normals, a search tree, axes, depth images."""
 
+from collections.abc import Callable
+
 import numpy as np
 from jaxtyping import Float, Int
 from scipy.spatial import cKDTree
@@ -9,7 +11,10 @@ from shapewright.distances.rasterize import PASS_FRAMES, prepared
 from shapewright.distances.zbuffer import ZBufferTarget
 from shapewright.errors import MeshError
 from shapewright.estimation.fast.outline import MOST_PIXELS, TargetOutline, Trace
+from shapewright.estimation.noise import without_noise
+from shapewright.estimation.prepared_query import PreparedQuery
 from shapewright.estimation.sampling_kernels import place_samples, sample_surface
+from shapewright.estimation.settings import EstimationSettings
 from shapewright.mesh import TriangleMesh
 
 SAMPLES = 12_000
@@ -59,6 +64,25 @@ class Target:
         self.outline = TargetOutline(np.isfinite(zbuffer.views[::2]), rng)
         near = np.asarray(self.tree.query(self.points[:500], k=2)[0])
         self._spacing = 1.3 * float(np.median(near[:, 1]))
+
+    @classmethod
+    def of(
+        cls, prepared: PreparedQuery, settings: EstimationSettings, checkpoint: Callable[[], None] = lambda: None
+    ) -> "Target":
+        """Prepare what a search compares with: the query, or where it is noisy the smooth surface beneath.
+
+        Args:
+            prepared: the query.
+            settings: of the estimation.
+            checkpoint: called between steps; may raise to stop.
+
+        Raises:
+            MeshError: the surface has no area.
+        """
+        smooth, zbuffer = without_noise(prepared.mesh, checkpoint), prepared.zbuffer
+        if smooth is not prepared.mesh:
+            zbuffer = ZBufferTarget(smooth.vertices, smooth.faces, settings.image_size)
+        return cls(smooth, zbuffer, np.random.default_rng(settings.seed))
 
     def spacing(self, count: int) -> float:
         """Return how far apart ``count`` samples lie, roughly."""
