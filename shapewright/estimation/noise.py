@@ -14,16 +14,17 @@ from scipy import sparse
 
 from shapewright.mesh import TriangleMesh
 
-FEWEST_VERTICES: Final = 1000
-_SIZES: Final = (0.0005, 0.05)
+FEWEST_VERTICES, MOST_VERTICES = 1000, 400_000
+"""Meshes with fewer vertices show no noise, those with more take seconds to look at; they stay as they are."""
+_SIZES: Final = (0.0005, 0.02)
 """Median distance of a vertex from the middle of its neighbors, as a share of the diagonal, that may be noise: with
 less there is no need to smooth, with more no shape is left."""
-_SPREAD: Final = (0.41, 0.55)
+_SPREAD: Final = (0.43, 0.51)
 """Quarter of these distances over their median: 0.47 for normally distributed ones. Flat faces and creases differ."""
-_ALIKE: Final = -0.03
+_ALIKE: Final = -0.05
 """Correlation of these distances with those of neighbors, below which they are noise: such vertices push each other
 out, while those of a curved surface lie on one side together."""
-_NORMALS_SMOOTHED: Final = 4
+_SMOOTHED: Final = 4
 _CLIPPED: Final = 3.0
 _PASSES: Final = 20
 _SHRINK, _GROW = 0.5, 0.52
@@ -42,8 +43,9 @@ def without_noise(mesh: TriangleMesh, checkpoint: Callable[[], None] = lambda: N
     if len(mesh.vertices) < FEWEST_VERTICES:
         return mesh
     welded = mesh.cleaned()
-    if len(welded.vertices) < FEWEST_VERTICES:
+    if not FEWEST_VERTICES <= len(welded.vertices) <= MOST_VERTICES:
         return mesh
+    checkpoint()
     middles = _neighborhood(welded)
     checkpoint()
     if not _is_noisy(welded, middles):
@@ -68,29 +70,35 @@ def _neighborhood(mesh: TriangleMesh) -> sparse.csr_array:
 
 def _is_noisy(mesh: TriangleMesh, middles: sparse.csr_array) -> bool:
     """Tell whether vertices lie off the middles of their neighbors as independent noise does."""
-    normals, areas = _vertex_normals(mesh)
-    for _ in range(_NORMALS_SMOOTHED):
-        normals = _unit(normals + middles @ normals)
-    heights = ((mesh.vertices - middles @ mesh.vertices) * normals).sum(axis=1)
-    order = np.argsort(np.abs(heights))
+    off, areas = _off_the_surface(mesh, middles)
+    heights = np.linalg.norm(off, axis=1)
+    order = np.argsort(heights)
     shares = np.cumsum(areas[order]) / areas.sum()
-    quarter, median = np.abs(heights)[order][np.searchsorted(shares, (0.25, 0.5))]
+    quarter, median = heights[order][np.searchsorted(shares, (0.25, 0.5))]
     low, high = mesh.bounds
     least, most = (size * float(np.linalg.norm(high - low)) for size in _SIZES)
     if not (least < median < most and _SPREAD[0] * median < quarter < _SPREAD[1] * median):
         return False
-    clipped = np.clip(heights, -_CLIPPED * median, _CLIPPED * median)
-    return bool((areas * clipped) @ (middles @ clipped) < _ALIKE * (areas @ clipped**2))
+    clipped = off * np.minimum(1.0, _CLIPPED * median / np.maximum(heights, 1e-300))[:, None]
+    together = (clipped * (middles @ clipped)).sum(axis=1)
+    return bool(areas @ together < _ALIKE * (areas @ (clipped**2).sum(axis=1)))
 
 
-def _vertex_normals(mesh: TriangleMesh) -> tuple[Float[np.ndarray, "V 3"], Float[np.ndarray, " V"]]:
-    """Return the mean normal of each vertex's triangles, and their area."""
-    corners, areas = mesh.faces.ravel(), np.repeat(mesh.face_areas, 3)
-    weighted = np.repeat(mesh.face_normals * mesh.face_areas[:, None], 3, axis=0)
-    count = len(mesh.vertices)
-    sums = np.stack([np.bincount(corners, weighted[:, axis], count) for axis in range(3)], axis=1)
-    return _unit(sums), np.bincount(corners, areas, count)
+def _off_the_surface(
+    mesh: TriangleMesh, middles: sparse.csr_array
+) -> tuple[Float[np.ndarray, "V 3"], Float[np.ndarray, " V"]]:
+    """Return how far each vertex is from the middle of its neighbors, across the surface, and the area about it.
 
-
-def _unit(vectors: Float[np.ndarray, "V 3"]) -> Float[np.ndarray, "V 3"]:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-300)
+    Which way a triangle faces does not matter: the mean of n n^T stands for the normal n.
+    """
+    count, corners, areas = len(mesh.vertices), mesh.faces.ravel(), np.repeat(mesh.face_areas, 3)
+    facing = np.repeat(mesh.face_normals, 3, axis=0)
+    across = np.empty((count, 9))
+    for k in range(9):
+        across[:, k] = np.bincount(corners, areas * facing[:, k // 3] * facing[:, k % 3], count)
+    for _ in range(_SMOOTHED):
+        across += middles @ across
+    normals = np.linalg.eigh(across.reshape(-1, 3, 3))[1][:, :, 2]
+    off = mesh.vertices - middles @ mesh.vertices
+    off = (off * normals).sum(axis=1, keepdims=True) * normals
+    return off, np.bincount(corners, areas, count)

@@ -90,6 +90,14 @@ def test_what_has_no_neighbors_or_few_vertices_is_left_alone(goblet):
     assert without_noise(few) is few
 
 
+def test_noise_is_seen_whichever_way_faces_look(goblet):
+    rough = noisy(goblet, 0.005)
+    flipped = np.random.default_rng(2).random(len(rough.faces)) < 0.5
+    faces = np.where(flipped[:, None], rough.faces[:, ::-1], rough.faces)
+    smooth = without_noise(TriangleMesh(rough.vertices, faces))
+    np.testing.assert_allclose(smooth.vertices, without_noise(rough).vertices, atol=1e-9)
+
+
 def test_smoothing_can_be_stopped(goblet):
     calls = []
 
