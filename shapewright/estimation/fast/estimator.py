@@ -88,6 +88,7 @@ class _Work:
         models = [FittedModel(model) for model in compiled]
         self.search = Search(target, models, known, lambda fraction, message: None)
         self._followed: dict[int, Candidate] = {}
+        self._measured: dict[Candidate, Candidate] = {}
         self.search.best["start", 0] = self._first_guess()
 
     def _first_guess(self) -> Candidate:
@@ -178,10 +179,16 @@ class _Work:
         search = self.search
         found: dict[int, Candidate] = {}
         for (_, number), candidate in search.best.items():
-            fine = fine_distance(search.target, candidate)
+            fine = self._fine(candidate)
             if number not in found or fine.zbuffer < found[number].zbuffer:
                 found[number] = fine
         return sorted(found.items(), key=lambda item: (item[0] not in self._followed, item[1].zbuffer))
+
+    def _fine(self, candidate: Candidate) -> Candidate:
+        """Return the candidate with the distance of its fine surface, which is measured once."""
+        if candidate not in self._measured:
+            self._measured[candidate] = fine_distance(self.search.target, candidate)
+        return self._measured[candidate]
 
     def _record(self, number: int) -> Record:
         """Return the stages of one model; a later one is no worse than those before it, by depth or by surface."""
@@ -190,7 +197,7 @@ class _Work:
         for stage in FAST_STAGES:
             candidate = self.search.best.get((stage, number))
             if candidate is not None:
-                candidate = fine_distance(self.search.target, candidate)
+                candidate = self._fine(candidate)
                 if best is None or candidate.zbuffer < best.zbuffer:
                     best = candidate
             if best is not None and stage == FAST_STAGES[-1]:
@@ -219,7 +226,7 @@ class _Work:
     def _contender(self, candidate: Candidate) -> Contender:
         number = self.search.models.index(candidate.model)
         comparison, model = self._comparisons[number], self._model(number)
-        zbuffer = fine_distance(self.search.target, candidate).zbuffer
+        zbuffer = self._fine(candidate).zbuffer
         return Contender(
             model.model,
             candidate.values,
