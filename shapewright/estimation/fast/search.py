@@ -21,13 +21,14 @@ from shapewright.estimation.fast.target import Target
 
 Phase = Literal["start", "fit", "polish"]
 
-INSTANCES: Final = 48
-"""Random instances of one model that are scored; several models share twice as many, but each has at least a third."""
-STARTS, STARTS_OF_EACH = 28, 3
+INSTANCES: Final = 96
+"""Random instances of one model that are scored; several models share half as many again, but each has at least a
+sixth."""
+STARTS, STARTS_OF_EACH = 40, 3
 """Candidates that least squares begin with: the best of all, and of each model."""
-SIFTED, SIFTED_OF_EACH = 10, 1
+SIFTED, SIFTED_OF_EACH = 16, 1
 """Candidates that go on after a few rounds."""
-PURSUED, PURSUED_OF_EACH = 4, 1
+PURSUED, PURSUED_OF_EACH = 6, 1
 """Candidates that go on after the first fit."""
 BRANCHED: Final = 2
 """Candidates whose options are changed."""
@@ -137,7 +138,7 @@ class Search:
     # ------------------------------------------------------------------ phases
 
     def _begin(self, rng: np.random.Generator) -> list[Candidate]:
-        count = max(INSTANCES // 3, min(INSTANCES, 2 * INSTANCES // len(self.models)))
+        count = max(INSTANCES // 6, min(INSTANCES, 3 * INSTANCES // (2 * len(self.models))))
         rows = []
         for model in self.models:
             drawn = model.compiled.random_values(rng, count)
