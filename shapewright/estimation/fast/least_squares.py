@@ -27,7 +27,7 @@ _FAR = 0.3
 """Distances beyond this count no more in the misfit."""
 _LEAST_WIDTH = 0.01
 _SAMPLED_EVERY = 3
-_SAME_NEIGHBORS = 0.5
+_SAME_NEIGHBORS = 0.25
 """Root mean square move of the surface, in spacings of the query's samples, after which neighbors are searched anew."""
 _GAIN, _PATIENCE = 0.003, 1
 """A round gains if its distance falls by this share; with outlines the search ends after more rounds without a gain."""
