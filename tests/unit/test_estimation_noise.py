@@ -111,7 +111,7 @@ def test_smoothing_can_be_stopped(goblet):
 
 
 def test_a_scanned_goblet_is_rebuilt_in_spite_of_its_noise(glass, goblet):
-    """With the rough surface as the target, most values came out wrong by more than a twentieth of their range."""
+    """With the rough surface as the target, fewer values are determined."""
     unit_m = glass.model.unit_m
     assert unit_m is not None
     rotation = Rotation.from_rotvec([0.3, -1.1, 0.6]).as_matrix()

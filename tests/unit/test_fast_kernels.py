@@ -333,3 +333,13 @@ def test_samples_of_a_surface_are_rows_over_its_control_points(seed):
     assert len(combined) == 20
     expected = np.einsum("nk,nkd->nd", weights, vertices[triangles[faces]])
     np.testing.assert_allclose(combined.points(control), expected, atol=1e-12)
+
+
+def test_the_nearest_of_some_neighbors_is_measured() -> None:
+    rng = np.random.default_rng(5)
+    points, others = rng.normal(size=(30, 3)), rng.normal(size=(50, 3))
+    near = rng.integers(50, size=(30, 4))
+    distances = np.empty(30)
+    matching_kernels.nearest_distances(points, others, near, distances)
+    expected = np.linalg.norm(points[:, None] - others[near], axis=2).min(axis=1)
+    np.testing.assert_allclose(distances, expected)
