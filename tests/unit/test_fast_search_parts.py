@@ -12,6 +12,7 @@ from shapewright.estimation.fast.fitted_model import FINE, FittedModel
 from shapewright.estimation.fast.least_squares import Effort, fit
 from shapewright.estimation.fast.measure import drawn, fine_distance, outline_distance
 from shapewright.estimation.fast.polish import Polish
+from shapewright.estimation.fast.search import APPROACHES, APPROACHES_WHERE_FOLLOWED, Known, Search
 from shapewright.estimation.fast.starts import find_starts, spread
 from shapewright.estimation.fast.target import Target, normalized
 from shapewright.mesh import TriangleMesh
@@ -270,3 +271,52 @@ def test_the_polish_ends_when_no_axis_has_a_step_left(target: Target, truth: Can
     polish.round(nothing)
     assert polish.evaluations == again
     assert polish.gain == 0.0
+
+
+# ---------------------------------------------------------------------- beginning again
+
+
+class CountedSearch(Search):
+    """A search that counts how often it begins; at first it may only start from one candidate that is far off."""
+
+    hopeless = 0
+    begun = 0
+
+    def _begin(self) -> list[Candidate]:
+        self.begun += 1
+        return self.hopeless_starts() if self.begun <= self.hopeless else super()._begin()
+
+    def hopeless_starts(self) -> list[Candidate]:
+        model = self.models[0]
+        far = candidate_at(model, [0.5, 2.0, 0.5, 1.0], random_pose(5, 0.02, 0.9))
+        self._keep("start", outline_distance(self.target, far))
+        return [far]
+
+
+def searched(model: FittedModel, query: TriangleMesh, hopeless: int = 0) -> CountedSearch:
+    search = CountedSearch(target_of(query), [model], [Known()], lambda fraction, message: None)
+    search.hopeless = hopeless
+    search.run(np.random.default_rng(0))
+    return search
+
+
+def test_a_solved_query_is_not_searched_again(model: FittedModel) -> None:
+    search = searched(model, placed(model.compiled, TRUE, POSE))
+    assert search.begun == 1
+    assert search.settled is not None
+
+
+def test_a_search_whose_starts_lead_nowhere_begins_again(model: FittedModel) -> None:
+    search = searched(model, placed(model.compiled, TRUE, POSE), hopeless=1)
+    assert search.begun == 2
+    assert search.settled is not None
+    assert_true(search.settled.candidate)
+
+
+def test_a_query_that_no_model_follows_is_given_up_in_the_end(model: FittedModel) -> None:
+    rng = np.random.default_rng(3)
+    spikes = TriangleMesh(rng.uniform(-1.0, 1.0, (120, 3)), np.arange(120).reshape(-1, 3))
+    search = searched(model, spikes)
+    assert search.settled is None
+    assert search.begun == APPROACHES < APPROACHES_WHERE_FOLLOWED
+    assert search.finished == {"start", "fit", "polish"}

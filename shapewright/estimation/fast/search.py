@@ -30,6 +30,9 @@ SIFTED, SIFTED_OF_EACH = 16, 1
 """Candidates that go on after a few rounds."""
 PURSUED, PURSUED_OF_EACH = 6, 1
 """Candidates that go on after the first fit."""
+APPROACHES, APPROACHES_WHERE_FOLLOWED = 2, 3
+"""Times that a search begins, with other instances each time, until the query is solved: where no model follows the
+query yet, and where one does."""
 BRANCHED: Final = 2
 """Candidates whose options are changed."""
 SETTLED: Final = 2
@@ -56,7 +59,7 @@ _MUCH_FARTHER: Final = (1.5, 0.1)
 """Candidates whose z-buffer distance after the first fit is larger than the best one's by this factor, and this more,
 are given up."""
 _SURE: Final = 1e-3
-"""Mean distance between surfaces, in half extents, below which options that were settled stay."""
+"""Mean distance between surfaces, in half extents, below which a query is solved: its options stay as they are."""
 _SOLVED: Final = 0.03
 """Z-buffer distance below which a fit by surfaces is not polished: pixels are not finer than that."""
 
@@ -109,16 +112,12 @@ class Search:
         self._message, self._fraction, self._rng = "first orientations", 0.0, rng
         with Pool(self._ask) as pool:
             self._pool = pool
-            candidates = self._begin(rng)
-            self._say(0.15, "first fits")
-            candidates = spread(self._fitted(candidates, _SIFT), SIFTED, SIFTED_OF_EACH)
-            candidates = self._fitted(candidates, _FIRST)
-            self._say(0.4, "closer fits")
-            candidates = self._fitted(spread(_hopeful(candidates), PURSUED, PURSUED_OF_EACH), _CLOSER)
-            self._say(0.5, "other poses")
-            candidates = self._turned(candidates)
-            self._say(0.55, "surfaces")
-            if not self._settles(candidates[:SETTLED]):
+            candidates: list[Candidate] = []
+            for begun in range(APPROACHES_WHERE_FOLLOWED):
+                if self._is_solved() or (begun >= APPROACHES and self.settled is None):
+                    break
+                candidates = _sorted([*candidates, *self._approached()])
+            if self.settled is None:
                 self._say(0.6, "options")
                 leaders = spread(candidates, BRANCHED, 0, of_one_turn=1)
                 self.kept += [one for one in candidates if one not in leaders]
@@ -126,23 +125,41 @@ class Search:
                 self._say(0.75, "dense fits")
                 candidates = self._fitted(_sorted(leaders), _DENSE)
                 candidates[0] = self._branched(candidates[0], _DENSE, fine_distance)
-                self._settles(candidates[:1])
+                self._settle(candidates[:1])
             self.finished.add("fit")
             if self.settled is None or self.settled.candidate.zbuffer > _SOLVED:
                 self._say(0.85, "polish")
                 if self.settled is not None:
                     candidates = [self.settled.candidate, *candidates]
-                self._settles([self._polish(candidates[:POLISHED], candidates[POLISHED:])])
+                self._settle([self._polish(candidates[:POLISHED], candidates[POLISHED:])])
             self.finished.add("polish")
 
     # ------------------------------------------------------------------ phases
 
-    def _begin(self, rng: np.random.Generator) -> list[Candidate]:
+    def _approached(self) -> list[Candidate]:
+        """Go from new random instances to close fits, the nearest first, and settle the nearest ones."""
+        candidates = self._begin()
+        self._say(0.15, "first fits")
+        candidates = spread(self._fitted(candidates, _SIFT), SIFTED, SIFTED_OF_EACH)
+        candidates = self._fitted(candidates, _FIRST)
+        self._say(0.4, "closer fits")
+        candidates = self._fitted(spread(_hopeful(candidates), PURSUED, PURSUED_OF_EACH), _CLOSER)
+        self._say(0.5, "other poses")
+        candidates = self._turned(candidates)
+        self._say(0.55, "surfaces")
+        self._settle(candidates[:SETTLED])
+        return candidates
+
+    def _is_solved(self) -> bool:
+        return self.settled is not None and self.settled.distance < _SURE
+
+    def _begin(self) -> list[Candidate]:
         count = max(INSTANCES // 6, min(INSTANCES, 3 * INSTANCES // (2 * len(self.models))))
         rows = []
         for model in self.models:
-            drawn = model.compiled.random_values(rng, count)
-            drawn[0] = model.settle(model.compiled.base_values())
+            drawn = model.compiled.random_values(self._rng, count)
+            if "start" not in self.finished:
+                drawn[0] = model.settle(model.compiled.base_values())
             rows.append(drawn)
         tasks = list(zip(self.models, self.known, rows, strict=True))
         groups = self._pool.map(
@@ -194,20 +211,18 @@ class Search:
         self.kept += closer
         return _sorted([*candidates, *closer])
 
-    def _settles(self, candidates: Sequence[Candidate]) -> bool:
-        """Settle the options by surfaces, if the model of one of the candidates follows the query."""
+    def _settle(self, candidates: Sequence[Candidate]) -> None:
+        """Settle the options by surfaces if the model of one of the candidates follows the query."""
         settling = Settling(self.target, self._fit, self._pool.map, self._rng)
         found = settling.fitted(candidates)
         for one in found:
             self._keep("fit", fine_distance(self.target, one.candidate))
         if not found or not found[0].follows:
-            return False
-        again = self.settled is not None and self.settled.distance < _SURE
-        settled = settling.converged(found[0]) if again else settling.settle(found[0])
+            return
+        settled = settling.converged(found[0]) if self._is_solved() else settling.settle(found[0])
         if self.settled is None or settled.distance < self.settled.distance:
             self.settled = replace(settled, candidate=fine_distance(self.target, settled.candidate))
             self._keep("fit", self.settled.candidate)
-        return True
 
     def _branched(
         self, candidate: Candidate, effort: Effort, measure: Callable[[Target, Candidate], Candidate]
@@ -261,7 +276,7 @@ class Search:
             self.best[key] = candidate
 
     def _say(self, fraction: float, message: str) -> None:
-        self._fraction, self._message = fraction, message
+        self._fraction, self._message = max(self._fraction, fraction), message
         self._ask()
 
     def _ask(self) -> None:
