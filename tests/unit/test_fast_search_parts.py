@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fast_support import angle_deg, candidate_at, lever, placed, random_pose, rigid, target_of
+from fast_support import angle_deg, candidate_at, lever, placed, random_pose, rigid, signs, target_of
 
 from shapewright.errors import Cancelled, MeshError
 from shapewright.estimation.fast.candidate import Candidate
@@ -12,7 +12,7 @@ from shapewright.estimation.fast.fitted_model import FINE, FittedModel
 from shapewright.estimation.fast.least_squares import Effort, fit
 from shapewright.estimation.fast.measure import drawn, fine_distance, outline_distance
 from shapewright.estimation.fast.polish import Polish
-from shapewright.estimation.fast.search import APPROACHES, APPROACHES_WHERE_FOLLOWED, Known, Search
+from shapewright.estimation.fast.search import APPROACHES, APPROACHES_OF_SEVERAL, Known, Search
 from shapewright.estimation.fast.starts import find_starts, spread
 from shapewright.estimation.fast.target import Target, normalized
 from shapewright.mesh import TriangleMesh
@@ -293,21 +293,21 @@ class CountedSearch(Search):
         return [far]
 
 
-def searched(model: FittedModel, query: TriangleMesh, hopeless: int = 0) -> CountedSearch:
-    search = CountedSearch(target_of(query), [model], [Known()], lambda fraction, message: None)
+def searched(models: list[FittedModel], query: TriangleMesh, hopeless: int = 0) -> CountedSearch:
+    search = CountedSearch(target_of(query), models, [Known()] * len(models), lambda fraction, message: None)
     search.hopeless = hopeless
     search.run(np.random.default_rng(0))
     return search
 
 
 def test_a_solved_query_is_not_searched_again(model: FittedModel) -> None:
-    search = searched(model, placed(model.compiled, TRUE, POSE))
+    search = searched([model], placed(model.compiled, TRUE, POSE))
     assert search.begun == 1
     assert search.settled is not None
 
 
 def test_a_search_whose_starts_lead_nowhere_begins_again(model: FittedModel) -> None:
-    search = searched(model, placed(model.compiled, TRUE, POSE), hopeless=1)
+    search = searched([model], placed(model.compiled, TRUE, POSE), hopeless=1)
     assert search.begun == 2
     assert search.settled is not None
     assert_true(search.settled.candidate)
@@ -316,7 +316,8 @@ def test_a_search_whose_starts_lead_nowhere_begins_again(model: FittedModel) -> 
 def test_a_query_that_no_model_follows_is_given_up_in_the_end(model: FittedModel) -> None:
     rng = np.random.default_rng(3)
     spikes = TriangleMesh(rng.uniform(-1.0, 1.0, (120, 3)), np.arange(120).reshape(-1, 3))
-    search = searched(model, spikes)
-    assert search.settled is None
-    assert search.begun == APPROACHES < APPROACHES_WHERE_FOLLOWED
-    assert search.finished == {"start", "fit", "polish"}
+    for models, times in (([model], APPROACHES), ([model, FittedModel(signs())], APPROACHES_OF_SEVERAL)):
+        search = searched(models, spikes)
+        assert search.settled is None
+        assert search.begun == times
+        assert search.finished == {"start", "fit", "polish"}

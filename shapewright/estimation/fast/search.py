@@ -30,9 +30,9 @@ SIFTED, SIFTED_OF_EACH = 16, 1
 """Candidates that go on after a few rounds."""
 PURSUED, PURSUED_OF_EACH = 6, 1
 """Candidates that go on after the first fit."""
-APPROACHES, APPROACHES_WHERE_FOLLOWED = 2, 3
-"""Times that a search begins, with other instances each time, until the query is solved: where no model follows the
-query yet, and where one does."""
+APPROACHES, APPROACHES_OF_SEVERAL = 3, 2
+"""Times that a search begins, with other instances each time, until the query is solved; fewer where there are several
+models and none of them follows the query yet."""
 BRANCHED: Final = 2
 """Candidates whose options are changed."""
 SETTLED: Final = 2
@@ -113,8 +113,9 @@ class Search:
         with Pool(self._ask) as pool:
             self._pool = pool
             candidates: list[Candidate] = []
-            for begun in range(APPROACHES_WHERE_FOLLOWED):
-                if self._is_solved() or (begun >= APPROACHES and self.settled is None):
+            for begun in range(APPROACHES):
+                follows = self.settled is not None or len(self.models) == 1
+                if self._is_solved() or (begun >= APPROACHES_OF_SEVERAL and not follows):
                     break
                 candidates = _sorted([*candidates, *self._approached()])
             if self.settled is None:
