@@ -51,9 +51,10 @@ def kept_classifier(
     cache: Path | None = None,
 ) -> "Classifier":
     """The classifier of these models and settings: of an earlier run, or trained now and kept."""
-    from shapewright.classification import load_backbone, load_classifier
+    from shapewright.classification import load_classifier
     from shapewright.classification.versions import learning_versions
     from shapewright.errors import ClassifierError
+    from shapewright.network import load_backbone
 
     digests = {name: [model.model.digest for model in models] for name, models in classes.items()}
     others = [model.model.digest for model in negatives]

@@ -9,9 +9,10 @@ from shapewright.progress import Progress
 from workers.context import JobContext, with_tuples
 
 if TYPE_CHECKING:
-    from shapewright.classification import FeatureExtractor, TrainingSettings
+    from shapewright.classification import TrainingSettings
     from shapewright.classification.dataset import Plan
     from shapewright.modeling import CompiledModel
+    from shapewright.network import FeatureExtractor
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +25,7 @@ class LearningPlan:
     @cached_property
     def extractor(self) -> "FeatureExtractor":
         """The backbone, loaded with the first use."""
-        from shapewright.classification import FeatureExtractor, load_backbone
+        from shapewright.network import FeatureExtractor, load_backbone
 
         return FeatureExtractor(load_backbone(self.settings.backbone), threads=1)
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from shapewright.classification.array_store import ArrayStore, FolderStore, MemoryStore
-    from shapewright.classification.backbone import BACKBONES, Backbone, load_backbone
     from shapewright.classification.class_instances import gather_instances, instances_of_each
     from shapewright.classification.classifier import (
         Classification,
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
     from shapewright.classification.collection_index import CollectionIndex
     from shapewright.classification.evidence import UNKNOWN
     from shapewright.classification.exemplars import Exemplars
-    from shapewright.classification.features import FeatureExtractor
     from shapewright.classification.indexing import Indexed, SkippedMesh, index_meshes, look_at
     from shapewright.classification.retrieval import ClassQuery, MeshQuery, RankedMesh, rank
     from shapewright.classification.settings import TrainingSettings
@@ -28,14 +26,11 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "ArrayStore": "array_store",
-    "BACKBONES": "backbone",
-    "Backbone": "backbone",
     "ClassQuery": "retrieval",
     "Classification": "classifier",
     "Classifier": "classifier",
     "CollectionIndex": "collection_index",
     "Exemplars": "exemplars",
-    "FeatureExtractor": "features",
     "FolderStore": "array_store",
     "Indexed": "indexing",
     "MemoryStore": "array_store",
@@ -50,7 +45,6 @@ _HOMES = {
     "gather_instances": "class_instances",
     "instances_of_each": "class_instances",
     "index_meshes": "indexing",
-    "load_backbone": "backbone",
     "load_classifier": "classifier",
     "look_at": "indexing",
     "rank": "retrieval",
@@ -58,16 +52,13 @@ _HOMES = {
 }
 
 __all__ = [
-    "BACKBONES",
     "UNKNOWN",
     "ArrayStore",
-    "Backbone",
     "ClassQuery",
     "Classification",
     "Classifier",
     "CollectionIndex",
     "Exemplars",
-    "FeatureExtractor",
     "FolderStore",
     "Indexed",
     "MemoryStore",
@@ -81,7 +72,6 @@ __all__ = [
     "gather_instances",
     "index_meshes",
     "instances_of_each",
-    "load_backbone",
     "load_classifier",
     "look_at",
     "rank",

@@ -1,4 +1,4 @@
-"""Measures the ranges of the backbone's activations that its 8-bit form needs, and writes them beside the code.
+"""Measures the ranges of the backbone's activations that its 8-bit form needs, and writes them beside it.
 
 ``python -m shapewright.classification.activation_ranges``. The pictures show random assemblies in the default style, so
 the ranges depend on no procedural model. They are kept in the repository: every machine then has the same graph.
@@ -11,13 +11,14 @@ import numpy as np
 import onnx
 from onnx import TensorProto, helper
 
-from shapewright.classification.backbone import RANGES_FILE, efficientnet_lite0_layers, load_backbone
 from shapewright.classification.chunks import chunk_images, chunks_of
-from shapewright.classification.features import make_session
-from shapewright.classification.file_format import IMAGES
-from shapewright.classification.quantized_graph import Ranges, range_names
 from shapewright.classification.settings import TrainingSettings
 from shapewright.classification.sources import AssemblySource
+from shapewright.network import backbone
+from shapewright.network.backbone import RANGES_FILE, efficientnet_lite0_layers, load_backbone
+from shapewright.network.ports import IMAGES
+from shapewright.network.quantized_graph import Ranges, range_names
+from shapewright.network.session import make_session
 
 OBJECTS = 48
 VIEWS = 2
@@ -45,7 +46,7 @@ def main() -> None:
     """Write the file."""
     rounded = {name: [float(f"{end:.5g}") for end in ends] for name, ends in measured_ranges().items()}
     lines = ",\n".join(f"  {json.dumps(name)}: {json.dumps(ends)}" for name, ends in rounded.items())
-    Path(__file__).with_name(RANGES_FILE).write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
+    Path(backbone.__file__).with_name(RANGES_FILE).write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -22,11 +22,11 @@ import numpy as np
 from jaxtyping import Float16, Float32, UInt8
 
 from shapewright.classification.array_store import ArrayStore
-from shapewright.classification.backbone import Backbone
-from shapewright.classification.features import FeatureExtractor
 from shapewright.classification.settings import TrainingSettings
 from shapewright.classification.sources import MESHES_VERSION, SERIES, Source
 from shapewright.mesh import TriangleMesh
+from shapewright.network.backbone import Backbone
+from shapewright.network.features import FeatureExtractor
 from shapewright.progress import NULL_PROGRESS, Progress
 from shapewright.rendering.images import render_images
 from shapewright.rendering.views import random_views

@@ -18,20 +18,14 @@ from shapewright.classification.evidence import (
     class_scores,
 )
 from shapewright.classification.exemplars import Exemplars
-from shapewright.classification.features import BATCH_SIZE, make_session
-from shapewright.classification.file_format import (
-    FORMAT,
-    FORMAT_VERSION,
-    IMAGES,
-    METADATA_KEY,
-    OPEN_PROBABILITIES,
-    PROBABILITIES,
-)
+from shapewright.classification.file_format import FORMAT, FORMAT_VERSION, METADATA_KEY
 from shapewright.classification.synthesis import FITTED_CLASSES, Fit, fit_class
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor
 from shapewright.errors import ClassifierError
 from shapewright.estimation.generator import InstanceGenerator
 from shapewright.mesh import TriangleMesh
+from shapewright.network.ports import IMAGES, OPEN_PROBABILITIES, PROBABILITIES
+from shapewright.network.session import BATCH_SIZE, make_session
 from shapewright.rendering.images import render_images
 from shapewright.rendering.styles import FRAMINGS, STYLES
 from shapewright.rendering.views import spread_views

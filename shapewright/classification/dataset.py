@@ -10,7 +10,6 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from shapewright.classification.array_store import ArrayStore
-from shapewright.classification.backbone import Backbone
 from shapewright.classification.chunks import Chunk, chunks_of, descriptors_key, features_key
 from shapewright.classification.evidence import OTHER, UNKNOWN
 from shapewright.classification.settings import TrainingSettings
@@ -23,6 +22,7 @@ from shapewright.classification.sources import (
 )
 from shapewright.errors import ClassifierError
 from shapewright.estimation.generator import InstanceGenerator
+from shapewright.network.backbone import Backbone
 
 OTHERS: Final = 8
 """Fewer models of no class share the objects as so many would: a model that comes or goes changes no other's."""

@@ -4,4 +4,3 @@ FORMAT = "shapewright-classifier"
 FORMAT_VERSION = 3
 """Raise it when files written before are read no longer, or would answer otherwise."""
 METADATA_KEY = "shapewright"
-IMAGES, FEATURES, PROBABILITIES, OPEN_PROBABILITIES = "images", "features", "probabilities", "open_probabilities"

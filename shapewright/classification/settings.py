@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from shapewright.classification.backbone import BACKBONES, DEFAULT_BACKBONE
 from shapewright.errors import ClassifierError
+from shapewright.network.backbone import BACKBONES, DEFAULT_BACKBONE
 from shapewright.rendering.styles import FRAMINGS, SCALE_RANGE, STYLES, WINDOW, Framing, ImageStyle
 
 
@@ -33,7 +33,7 @@ class TrainingSettings:
         weight_decay: pull of the last layer's weights towards zero.
         batch_size: pictures in one step of the head's training.
         seed: of everything random; the same seed, models and settings give the same classifier.
-        backbone: an entry of :data:`shapewright.classification.backbone.BACKBONES`.
+        backbone: an entry of :data:`shapewright.network.backbone.BACKBONES`.
         style: look of the pictures.
         framing: how an object is put into its picture.
         window: half the side of a picture in units of the scaled object.

@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 
 from shapewright.classification.array_store import ArrayStore, MemoryStore
-from shapewright.classification.backbone import load_backbone
 from shapewright.classification.calibration import calibrate, calibration_error
 from shapewright.classification.chunks import is_stored, store_chunk
 from shapewright.classification.dataset import FeatureSet, Plan, load_descriptors, load_features, plan_learning
 from shapewright.classification.exemplars import Exemplars, exemplars_of
 from shapewright.classification.export import ModelReference, classifier_metadata, export_classifier
-from shapewright.classification.features import FeatureExtractor
 from shapewright.classification.head import Head, train_head
 from shapewright.classification.settings import TrainingSettings
 from shapewright.estimation.generator import InstanceGenerator
+from shapewright.network.backbone import load_backbone
+from shapewright.network.features import FeatureExtractor
 from shapewright.progress import NULL_PROGRESS, PartialProgress, Progress
 
 IMAGES_SHARE = 0.85

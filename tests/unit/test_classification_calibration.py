@@ -6,10 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from simple_shapes import BoxModel, toy_classes
 
-from shapewright.classification import MemoryStore, TrainingSettings, load_backbone, train_classifier
+from shapewright.classification import MemoryStore, TrainingSettings, train_classifier
 from shapewright.classification.calibration import MAX_TEMPERATURE, Calibration, auroc, calibrate, fit_temperature
 from shapewright.classification.chunks import features_key
 from shapewright.classification.dataset import load_features, plan_learning
+from shapewright.network import load_backbone
 
 SCORES = st.lists(st.integers(0, 6).map(float), min_size=1, max_size=25)
 

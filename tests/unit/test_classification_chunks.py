@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from simple_shapes import BoxModel, toy_classes
 
-from shapewright.classification import FeatureExtractor, FolderStore, MemoryStore, TrainingSettings, load_backbone
+from shapewright.classification import FolderStore, MemoryStore, TrainingSettings
 from shapewright.classification import training as training_module
 from shapewright.classification.array_store import ArrayStore
 from shapewright.classification.chunks import (
@@ -29,6 +29,7 @@ from shapewright.classification.sources import (
 )
 from shapewright.classification.training import train_classifier
 from shapewright.errors import Cancelled, ClassifierError
+from shapewright.network import FeatureExtractor, load_backbone
 from shapewright.progress import CallbackProgress
 
 SMALL = TrainingSettings(

@@ -17,7 +17,6 @@ from shapewright.classification import (
     Classifier,
     TrainingSettings,
     exemplars_file,
-    load_backbone,
     load_classifier,
     train_classifier,
 )
@@ -28,6 +27,7 @@ from shapewright.classification.head import Head
 from shapewright.classification.negatives import random_assembly
 from shapewright.distances.panorama import panorama_descriptor
 from shapewright.errors import ClassifierError
+from shapewright.network import load_backbone
 
 SETTINGS = TrainingSettings(
     variations=24, images_per_variation=4, image_size=128, negatives=40, held_out=0.25, epochs=25
@@ -185,8 +185,8 @@ def test_plain_onnxruntime_reads_the_file(trained, pictures_alone):
 def test_the_graph_computes_the_trained_head():
     # Torch's head and ONNX Runtime's graph agree, temperature included.
     rng = np.random.default_rng(0)
-    from shapewright.classification import FeatureExtractor
     from shapewright.classification.export import classifier_metadata
+    from shapewright.network import FeatureExtractor
 
     backbone = load_backbone()
     settings = TrainingSettings(image_size=64)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from simple_shapes import BoxModel, toy_classes
 
-from shapewright.classification import FeatureExtractor, MemoryStore, TrainingSettings, load_backbone, train_classifier
+from shapewright.classification import MemoryStore, TrainingSettings, train_classifier
 from shapewright.classification.calibration import calibration_error
 from shapewright.classification.chunks import BLOCK, chunk_images, features_key
 from shapewright.classification.dataset import load_features, plan_learning
@@ -15,6 +15,7 @@ from shapewright.classification.head import train_head
 from shapewright.classification.sources import ModelSource
 from shapewright.classification.training import draw_and_describe, held_out_metrics
 from shapewright.errors import Cancelled, ClassifierError
+from shapewright.network import FeatureExtractor, load_backbone
 from shapewright.progress import CallbackProgress
 
 SMALL = TrainingSettings(

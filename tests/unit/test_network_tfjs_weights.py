@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from shapewright.classification import tfjs_weights
-from shapewright.classification.tfjs_weights import WeightsFile
 from shapewright.errors import ClassifierError
+from shapewright.network import tfjs_weights
+from shapewright.network.tfjs_weights import WeightsFile
 
 INTEGERS = np.arange(24, dtype=np.uint8).reshape(2, 3, 4)
 FINE_INTEGERS = np.array([0, 1, 65535], dtype="<u2")

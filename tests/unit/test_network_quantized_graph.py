@@ -9,18 +9,19 @@ import onnxruntime
 import pytest
 import simple_shapes
 
-from shapewright.classification import FeatureExtractor, TrainingSettings, load_backbone
-from shapewright.classification.backbone import RANGES_FILE, Backbone, efficientnet_lite0_layers
+from shapewright.classification import TrainingSettings
 from shapewright.classification.calibration import Calibration
 from shapewright.classification.export import classifier_metadata, export_classifier
 from shapewright.classification.head import Head
-from shapewright.classification.quantized_graph import quantized_features_graph, range_names
+from shapewright.network import FeatureExtractor, load_backbone
+from shapewright.network.backbone import RANGES_FILE, Backbone, efficientnet_lite0_layers
+from shapewright.network.quantized_graph import quantized_features_graph, range_names
 from shapewright.rendering import random_views, render_images
 
 
 @pytest.fixture(scope="module")
 def ranges() -> dict[str, tuple[float, float]]:
-    text = resources.files("shapewright.classification").joinpath(RANGES_FILE).read_text(encoding="utf-8")
+    text = resources.files("shapewright.network").joinpath(RANGES_FILE).read_text(encoding="utf-8")
     return {name: (low, high) for name, (low, high) in json.loads(text).items()}
 
 

@@ -11,11 +11,11 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Float
 
-from shapewright.classification.network import PICTURES, Concatenate, Convolve, Pool, Rectify, Step
 from shapewright.errors import ClassifierError
+from shapewright.network.steps import PICTURES, Concatenate, Convolve, Pool, Rectify, Step
 
 WEIGHTS_FILE = "inception_v3.npz"
-"""Written by :mod:`shapewright.classification.tfjs_weights`."""
+"""Written by :mod:`shapewright.network.tfjs_weights`."""
 IMAGE_SIZE = 299
 PIXEL_MEAN = PIXEL_SCALE = 127.5
 BATCH_NORM_EPSILON = 1e-3

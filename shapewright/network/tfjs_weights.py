@@ -1,6 +1,6 @@
 """Weights of a TensorFlow.js model in one file.
 
-``python -m shapewright.classification.tfjs_weights model.json weights.npz`` converts them.
+``python -m shapewright.network.tfjs_weights model.json weights.npz`` converts them.
 
 A model of TensorFlow.js is ``model.json``, whose ``weightsManifest`` names the weights in order, and binary files
 that hold them one after the other. Quantised weights are unsigned integers; the number meant is

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from shapewright.classification.network import PICTURES, Add, Convolve, Rectify, Step
 from shapewright.errors import ClassifierError
+from shapewright.network.steps import PICTURES, Add, Convolve, Rectify, Step
 
 IMAGE_SIZE = 224
 FEATURE_COUNT = 1280

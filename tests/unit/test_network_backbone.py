@@ -6,11 +6,11 @@ import pytest
 import simple_shapes
 import torch
 
-from shapewright.classification import BACKBONES, FeatureExtractor, load_backbone
-from shapewright.classification.backbone import WEIGHTS_FOLDER, efficientnet_lite0_layers
-from shapewright.classification.efficientnet_lite import layers_from_state
-from shapewright.classification.torch_network import TorchBackbone
 from shapewright.errors import ClassifierError
+from shapewright.network import BACKBONES, FeatureExtractor, load_backbone
+from shapewright.network.backbone import WEIGHTS_FOLDER, efficientnet_lite0_layers
+from shapewright.network.efficientnet_lite import layers_from_state
+from shapewright.network.torch_network import TorchBackbone
 from shapewright.rendering import random_views, render_images
 
 LITE0 = ("efficientnet_lite0", "efficientnet_lite0_int8", "efficientnet_lite0_random")

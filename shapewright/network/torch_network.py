@@ -6,15 +6,15 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from shapewright.classification import efficientnet_lite
-from shapewright.classification.efficientnet_lite import Convolution
+from shapewright.network import efficientnet_lite
+from shapewright.network.efficientnet_lite import Convolution
 
 
 class TorchBackbone(nn.Module):
     """Features of pictures by a list of convolutions.
 
     Args:
-        layers: from :mod:`shapewright.classification.efficientnet_lite`.
+        layers: from :mod:`shapewright.network.efficientnet_lite`.
     """
 
     def __init__(self, layers: Sequence[Convolution]) -> None:

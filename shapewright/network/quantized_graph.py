@@ -1,7 +1,7 @@
 """The backbone in 8 bits: weights per channel, activations by ranges that were measured once (static QDQ).
 
 ONNX Runtime fuses each ``DequantizeLinear → Conv → QuantizeLinear`` into an integer convolution (Jacob et al. 2018).
-Its sums are exact on every processor, see :mod:`shapewright.classification.quantized_weights`.
+Its sums are exact on every processor, see :mod:`shapewright.network.quantized_weights`.
 The pictures are bytes already: with the scale 1 / 128 and the zero point 127 they are the first activation as they
 are, and nothing is converted.
 """
@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from onnx import helper
 
-from shapewright.classification.efficientnet_lite import Convolution
-from shapewright.classification.file_format import FEATURES, IMAGES
-from shapewright.classification.graphs import constant, features_model
-from shapewright.classification.quantized_weights import quantize_weights
+from shapewright.network.efficientnet_lite import Convolution
+from shapewright.network.graphs import constant, features_model
+from shapewright.network.ports import FEATURES, IMAGES
+from shapewright.network.quantized_weights import quantize_weights
 
 Ranges = Mapping[str, tuple[float, float]]
 """Smallest and largest activation of each tensor ``conv<number>`` and ``sum<number>`` of the float graph."""
@@ -89,7 +89,7 @@ class _Writer:
 def quantized_features_graph(
     layers: Sequence[Convolution], ranges: Ranges, *, pixel_mean: float, pixel_scale: float
 ) -> Any:
-    """As :func:`shapewright.classification.graphs.features_graph`, in 8-bit integers up to the mean at the end.
+    """As :func:`shapewright.network.graphs.features_graph`, in 8-bit integers up to the mean at the end.
 
     Returns:
         An ``onnx.ModelProto``.

@@ -8,10 +8,11 @@ import simple_shapes
 import torch
 from torch.nn import functional
 
-from shapewright.classification import FeatureExtractor, TrainingSettings, inception, load_backbone
-from shapewright.classification.backbone import BACKBONES, WEIGHTS_FOLDER, Backbone
-from shapewright.classification.graphs import features_graph
+from shapewright.classification import TrainingSettings
 from shapewright.errors import ClassifierError
+from shapewright.network import FeatureExtractor, inception, load_backbone
+from shapewright.network.backbone import BACKBONES, WEIGHTS_FOLDER, Backbone
+from shapewright.network.graphs import features_graph
 from shapewright.rendering import random_views, render_images
 
 

@@ -14,15 +14,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shapewright.classification import efficientnet_lite, inception
-from shapewright.classification.efficientnet_lite import Convolution
-from shapewright.classification.network import Convolve, Step, output_channels
-from shapewright.classification.picture_sizes import PictureSizes
-from shapewright.classification.tfjs_weights import WeightsFile
 from shapewright.errors import ClassifierError
+from shapewright.network import efficientnet_lite, inception
+from shapewright.network.efficientnet_lite import Convolution
+from shapewright.network.picture_sizes import PictureSizes
+from shapewright.network.steps import Convolve, Step, output_channels
+from shapewright.network.tfjs_weights import WeightsFile
 
 if TYPE_CHECKING:
-    from shapewright.classification.quantized_graph import Ranges
+    from shapewright.network.quantized_graph import Ranges
 
 DEFAULT_BACKBONE = "efficientnet_lite0_int8"
 RANGES_FILE = "efficientnet_lite0_ranges.json"
@@ -122,7 +122,7 @@ def _efficientnet_lite0(_: Path) -> Backbone:
 
 
 def _efficientnet_lite0_int8(_: Path) -> Backbone:
-    text = resources.files("shapewright.classification").joinpath(RANGES_FILE).read_text(encoding="utf-8")
+    text = resources.files("shapewright.network").joinpath(RANGES_FILE).read_text(encoding="utf-8")
     ranges = {str(name): (float(low), float(high)) for name, (low, high) in json.loads(text).items()}
     return _pretrained(DEFAULT_BACKBONE, ranges)
 
@@ -136,8 +136,8 @@ def _efficientnet_lite0_random(_: Path) -> Backbone:
 def _lite0(
     name: str, layers: tuple[Convolution, ...], weights: str, digest: str, ranges: "Ranges | None" = None
 ) -> Backbone:
-    from shapewright.classification.graphs import features_graph
-    from shapewright.classification.quantized_graph import quantized_features_graph
+    from shapewright.network.graphs import features_graph
+    from shapewright.network.quantized_graph import quantized_features_graph
 
     scaling = {"pixel_mean": efficientnet_lite.PIXEL_MEAN, "pixel_scale": efficientnet_lite.PIXEL_SCALE}
     if ranges is None:
@@ -174,7 +174,7 @@ def _inception_random(_: Path) -> Backbone:
 
 
 def _inception_of(name: str, steps: tuple[Step, ...], weights: str, digest: str) -> Backbone:
-    from shapewright.classification.graphs import features_graph
+    from shapewright.network.graphs import features_graph
 
     mean, scale = inception.PIXEL_MEAN, inception.PIXEL_SCALE
     return Backbone(

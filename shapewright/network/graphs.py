@@ -8,8 +8,8 @@ import onnx
 from jaxtyping import Float
 from onnx import TensorProto, helper, numpy_helper
 
-from shapewright.classification.file_format import FEATURES, IMAGES, OPEN_PROBABILITIES, PROBABILITIES
-from shapewright.classification.network import (
+from shapewright.network.ports import FEATURES, IMAGES, OPEN_PROBABILITIES, PROBABILITIES
+from shapewright.network.steps import (
     PICTURES,
     Add,
     Concatenate,

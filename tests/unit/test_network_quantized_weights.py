@@ -5,7 +5,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from shapewright.classification.quantized_weights import LARGEST_PAIR, quantize_weights
+from shapewright.network.quantized_weights import LARGEST_PAIR, quantize_weights
 
 KERNELS = st.tuples(st.integers(1, 4), st.integers(1, 8), st.integers(1, 5), st.integers(1, 5)).flatmap(
     lambda shape: arrays.arrays(np.float32, shape, elements=st.floats(-8, 8, width=32))
