@@ -10,9 +10,9 @@ from shapewright.errors import ClassifierError, MeshFileError
 from shapewright.progress import Progress
 
 if TYPE_CHECKING:
-    from shapewright.classification import CollectionIndex, SkippedMesh
-    from shapewright.classification.indexing import MeshClassifier
     from shapewright.mesh import TriangleMesh
+    from shapewright.retrieval import CollectionIndex, SkippedMesh
+    from shapewright.retrieval.indexing import MeshClassifier
 
 
 @dataclass(frozen=True)
@@ -46,9 +46,9 @@ def index_files(
     Raises:
         ClassifierError: the named file is no index, or of another classifier.
     """
-    from shapewright.classification import SkippedMesh
-    from shapewright.classification.indexing import index_chunks
     from shapewright.evaluation.descriptor_cache import file_digest
+    from shapewright.retrieval import SkippedMesh
+    from shapewright.retrieval.indexing import index_chunks
 
     path = _cached(classifier_digest) if kept_in is None else kept_in
     index = _kept(path, classifier, classifier_digest, strict=kept_in is not None)
@@ -87,7 +87,7 @@ def _cached(classifier_digest: str) -> Path:
 
 
 def _kept(path: Path, classifier: "MeshClassifier", classifier_digest: str, *, strict: bool) -> "CollectionIndex":
-    from shapewright.classification import CollectionIndex
+    from shapewright.retrieval import CollectionIndex
 
     try:
         index = CollectionIndex.load(path)

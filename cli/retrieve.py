@@ -16,9 +16,9 @@ from shapewright.errors import ClassifierError, MeshFileError, ModelError, Rende
 from shapewright.progress import PartialProgress, Progress
 
 if TYPE_CHECKING:
-    from shapewright.classification import ClassQuery, RankedMesh
     from shapewright.estimation import InstanceGenerator, PanoramaBank
     from shapewright.modeling import CompiledModel
+    from shapewright.retrieval import ClassQuery, RankedMesh
 
 
 class EvidenceName(StrEnum):
@@ -96,8 +96,9 @@ def retrieve(
     if sum(wanted is not None for wanted in (class_name, model, mesh)) != 1:
         raise typer.BadParameter("name one of a class, a model, a mesh", param_hint="--class, --model, --mesh")
     _check_sheet(sheet, limit, with_query=mesh is not None)
-    from shapewright.classification import MeshQuery, exemplars_file, files_digest, load_classifier, rank
-    from shapewright.classification.retrieval import default_evidence
+    from shapewright.classification import exemplars_file, files_digest, load_classifier
+    from shapewright.retrieval import MeshQuery, rank
+    from shapewright.retrieval.ranking import default_evidence
 
     chosen = evidence or EvidenceName(default_evidence(class_name))
 
@@ -196,8 +197,9 @@ def _class_query(
     progress: Progress,
     class_name: str | None,
 ) -> "ClassQuery":
-    from shapewright.classification import ClassQuery, gather_instances, instances_of_each
+    from shapewright.classification import gather_instances, instances_of_each
     from shapewright.evaluation.descriptor_cache import BankRequest, DescriptorCache
+    from shapewright.retrieval import ClassQuery
 
     wanted = class_name if class_name is not None else models[0].model.class_name
     if evidence == "probabilities":

@@ -12,7 +12,7 @@ from service.errors import Problem, ProblemError, reference_error
 from service.routes import NOT_MODIFIED, binary, problems
 from service.schemas.jobs import AcceptedOut
 from service.schemas.retrievals import RetrievalIn, RetrievalOut, RetrievalPageOut
-from shapewright.classification.retrieval import default_evidence
+from shapewright.retrieval.ranking import default_evidence
 
 router = APIRouter(prefix="/v1/retrievals", tags=["retrievals"])
 

@@ -1,4 +1,4 @@
-"""Learning classes from rendered variations, classifying meshes and finding them (paper sections 3.2 and 4.2).
+"""Learning classes from rendered variations and classifying meshes (paper section 3.2).
 
 Names are loaded when first used: :class:`Classifier` needs ONNX Runtime, only training needs torch.
 """
@@ -16,27 +16,18 @@ if TYPE_CHECKING:
         files_digest,
         load_classifier,
     )
-    from shapewright.classification.collection_index import CollectionIndex
     from shapewright.classification.evidence import UNKNOWN
     from shapewright.classification.exemplars import Exemplars
-    from shapewright.classification.indexing import Indexed, SkippedMesh, index_meshes, look_at
-    from shapewright.classification.retrieval import ClassQuery, MeshQuery, RankedMesh, rank
     from shapewright.classification.settings import TrainingSettings
     from shapewright.classification.training import TrainedClassifier, train_classifier
 
 _HOMES = {
     "ArrayStore": "array_store",
-    "ClassQuery": "retrieval",
     "Classification": "classifier",
     "Classifier": "classifier",
-    "CollectionIndex": "collection_index",
     "Exemplars": "exemplars",
     "FolderStore": "array_store",
-    "Indexed": "indexing",
     "MemoryStore": "array_store",
-    "MeshQuery": "retrieval",
-    "RankedMesh": "retrieval",
-    "SkippedMesh": "indexing",
     "TrainedClassifier": "training",
     "TrainingSettings": "settings",
     "UNKNOWN": "evidence",
@@ -44,37 +35,25 @@ _HOMES = {
     "files_digest": "classifier",
     "gather_instances": "class_instances",
     "instances_of_each": "class_instances",
-    "index_meshes": "indexing",
     "load_classifier": "classifier",
-    "look_at": "indexing",
-    "rank": "retrieval",
     "train_classifier": "training",
 }
 
 __all__ = [
     "UNKNOWN",
     "ArrayStore",
-    "ClassQuery",
     "Classification",
     "Classifier",
-    "CollectionIndex",
     "Exemplars",
     "FolderStore",
-    "Indexed",
     "MemoryStore",
-    "MeshQuery",
-    "RankedMesh",
-    "SkippedMesh",
     "TrainedClassifier",
     "TrainingSettings",
     "exemplars_file",
     "files_digest",
     "gather_instances",
-    "index_meshes",
     "instances_of_each",
     "load_classifier",
-    "look_at",
-    "rank",
     "train_classifier",
 ]
 

@@ -9,9 +9,9 @@ from jaxtyping import Float
 
 from shapewright.classification.calibration import auroc
 from shapewright.classification.evidence import OTHER
-from shapewright.classification.retrieval import combined_scores
 from shapewright.evaluation.classified import Judged, JudgedDataset, Said
 from shapewright.evaluation.retrieval_metrics import RetrievalFigures, figures_of, mean_figures, relevance
+from shapewright.retrieval.ranking import combined_scores
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +125,7 @@ def unknown_figures(dataset: JudgedDataset) -> dict[str, float | None]:
 def rankings_of(dataset: JudgedDataset) -> dict[str, Float[np.ndarray, "N C"]]:
     """What each kind of evidence and each baseline ranks every mesh by, for each class.
 
-    ``all`` and ``combined`` are what :func:`shapewright.classification.retrieval.rank` ranks by, for the evidence
+    ``all`` and ``combined`` are what :func:`shapewright.retrieval.ranking.rank` ranks by, for the evidence
     ``probabilities`` and, with the classifier's exemplars as instances, for ``combined``.
     """
     judged = dataset.judged

@@ -18,9 +18,9 @@ from worker_support import Site, now
 from models_store import catalog, claims
 from models_store.jobs import JobState
 from models_store.tables import CollectionRow, RetrievalRow
-from shapewright.classification import CollectionIndex
 from shapewright.errors import Cancelled, MeshError
 from shapewright.mesh import TriangleMesh
+from shapewright.retrieval import CollectionIndex
 from workers.context import JobContext, WorkerProgress
 from workers.runner import Runner
 from workers.settings import WorkerSettings
@@ -171,7 +171,7 @@ def test_a_collection_without_a_usable_mesh_fails_and_says_why(site: Site, netwo
 def test_half_an_index_is_kept_for_the_next_attempt_unless_it_was_cancelled(
     site: Site, network: ExtentClassifier, monkeypatch: pytest.MonkeyPatch, reason: type[BaseException]
 ) -> None:
-    monkeypatch.setattr("shapewright.classification.indexing.CHUNK", 1)
+    monkeypatch.setattr("shapewright.retrieval.indexing.CHUNK", 1)
     add_classifier(site)
     row = ask(site, upload_all(site))
     report = WorkerProgress.report

@@ -9,8 +9,8 @@ from fake_classifier import ExtentClassifier
 from PIL import Image
 from small_dataset import rod, slab
 
-from shapewright.classification import CollectionIndex
 from shapewright.modeling import compile_model
+from shapewright.retrieval import CollectionIndex
 
 ASKED = ExtentClassifier()
 

@@ -27,7 +27,6 @@ from service.schemas.jobs import RESULT_PATHS
 from service.schemas.models import ParameterOut
 from service.schemas.retrievals import Evidence
 from shapewright.classification import TrainingSettings
-from shapewright.classification.retrieval import EVIDENCE
 from shapewright.distances.alignment import Pose
 from shapewright.estimation import (
     Alternative,
@@ -51,6 +50,7 @@ from shapewright.modeling import ProceduralModel
 from shapewright.modeling.units import KINDS
 from shapewright.rendering import STYLES
 from shapewright.rendering.styles import FRAMINGS
+from shapewright.retrieval.ranking import EVIDENCE
 
 
 def test_the_published_descriptions_are_fresh() -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from workers.context import JobContext
 
 if TYPE_CHECKING:
-    from shapewright.classification import CollectionIndex
+    from shapewright.retrieval import CollectionIndex
 
 
 def load_index(context: JobContext, key: str) -> "CollectionIndex":
@@ -17,7 +17,7 @@ def load_index(context: JobContext, key: str) -> "CollectionIndex":
         ClassifierError: it is damaged.
         ArtifactError: it cannot be read, or is not there.
     """
-    from shapewright.classification import CollectionIndex
+    from shapewright.retrieval import CollectionIndex
 
     return CollectionIndex.load(context.artifacts.local_copy(key, context.settings.data_dir / "cache"))
 
@@ -29,7 +29,7 @@ def load_changing_index(context: JobContext, key: str) -> "CollectionIndex":
         ClassifierError: it is damaged.
         ArtifactError: it cannot be read, or is not there.
     """
-    from shapewright.classification import CollectionIndex
+    from shapewright.retrieval import CollectionIndex
 
     with tempfile.TemporaryDirectory(prefix="shapewright-index-") as folder:
         path = Path(folder) / "index.npz"

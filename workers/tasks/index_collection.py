@@ -17,8 +17,8 @@ from workers.stored.classifiers import LoadedClassifier, stored_classifier
 from workers.stored.indexes import load_changing_index, load_index, store_index
 
 if TYPE_CHECKING:
-    from shapewright.classification import CollectionIndex, SkippedMesh
     from shapewright.mesh import TriangleMesh
+    from shapewright.retrieval import CollectionIndex, SkippedMesh
 
 log = structlog.get_logger(__name__)
 
@@ -59,7 +59,7 @@ def _known(
     context: JobContext, loaded: LoadedClassifier, mesh_ids: Sequence[str], part_key: str, earlier: Sequence[str]
 ) -> "CollectionIndex":
     """What is known about these meshes: from an attempt that was interrupted, and from other collections."""
-    from shapewright.classification import CollectionIndex
+    from shapewright.retrieval import CollectionIndex
 
     index = CollectionIndex.empty(loaded.classifier.class_names, loaded.digest)
     readers = [partial(load_changing_index, context, part_key)]
@@ -83,7 +83,7 @@ def _extended(
     context: JobContext, loaded: LoadedClassifier, index: "CollectionIndex", mesh_ids: Sequence[str], part_key: str
 ) -> "tuple[CollectionIndex, list[SkippedMesh]]":
     """Index the other meshes; now and then, and when this worker stops, what is done is kept."""
-    from shapewright.classification.indexing import index_chunks
+    from shapewright.retrieval.indexing import index_chunks
 
     here = index.rows_of(mesh_ids)
     new = [mesh_id for mesh_id in mesh_ids if mesh_id not in here]

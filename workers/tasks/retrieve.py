@@ -19,10 +19,10 @@ from workers.stored.indexes import load_index
 if TYPE_CHECKING:
     from jaxtyping import Float32
 
-    from shapewright.classification import ClassQuery, CollectionIndex, MeshQuery, RankedMesh
     from shapewright.estimation import InstanceGenerator, PanoramaBank
     from shapewright.modeling import CompiledModel
     from shapewright.rendering import LabelledMesh
+    from shapewright.retrieval import ClassQuery, CollectionIndex, MeshQuery, RankedMesh
 
 SHEET_CELLS: Final = 24
 """Meshes on a contact sheet."""
@@ -30,7 +30,7 @@ SHEET_CELLS: Final = 24
 
 def retrieve(context: JobContext) -> Outcome:
     """Rank the collection of the retrieval's row for its query."""
-    from shapewright.classification import rank
+    from shapewright.retrieval import rank
 
     identifier = str(context.claim.payload["retrieval_id"])
     with context.database.reading() as session:
@@ -68,7 +68,7 @@ def retrieve(context: JobContext) -> Outcome:
 def _query(
     context: JobContext, row: RetrievalRow, collection: CollectionRow, index: "CollectionIndex", progress: Progress
 ) -> "ClassQuery | MeshQuery":
-    from shapewright.classification import ClassQuery, MeshQuery, look_at
+    from shapewright.retrieval import ClassQuery, MeshQuery, look_at
 
     if row.mesh_id is not None:
         rows = index.rows_of([row.mesh_id])

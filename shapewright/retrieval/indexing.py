@@ -8,12 +8,12 @@ from typing import Final, Protocol, runtime_checkable
 import numpy as np
 
 from shapewright.classification.classifier import DEFAULT_VIEWS, Classification
-from shapewright.classification.collection_index import CollectionIndex
-from shapewright.classification.retrieval import MeshQuery
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor
 from shapewright.errors import MeshError
 from shapewright.mesh import TriangleMesh
 from shapewright.progress import NULL_PROGRESS, Progress
+from shapewright.retrieval.collection_index import CollectionIndex
+from shapewright.retrieval.ranking import MeshQuery
 
 SEED: Final = 0
 """Every mesh is seen from the same random sides, so that what is said of it depends on no other mesh."""

@@ -12,18 +12,7 @@ from hypothesis.extra import numpy as arrays
 from simple_shapes import box
 from small_dataset import rod, slab
 
-from shapewright.classification import (
-    ClassQuery,
-    CollectionIndex,
-    MeshQuery,
-    gather_instances,
-    index_meshes,
-    instances_of_each,
-    look_at,
-    rank,
-)
-from shapewright.classification.indexing import index_chunks
-from shapewright.classification.retrieval import combined_scores
+from shapewright.classification import gather_instances, instances_of_each
 from shapewright.distances.panorama import DESCRIPTOR_SIZE, panorama_descriptor, panorama_distance
 from shapewright.errors import Cancelled, ClassifierError
 from shapewright.estimation import build_bank
@@ -31,6 +20,9 @@ from shapewright.mapped_arrays import read_header, write_arrays
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling import compile_model
 from shapewright.progress import CallbackProgress
+from shapewright.retrieval import ClassQuery, CollectionIndex, MeshQuery, index_meshes, look_at, rank
+from shapewright.retrieval.indexing import index_chunks
+from shapewright.retrieval.ranking import combined_scores
 
 DIGEST = "d" * 64
 FLAT = TriangleMesh(np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0.0]]), np.array([[0, 1, 2]]))

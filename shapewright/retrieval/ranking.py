@@ -20,9 +20,9 @@ from typing import Final, Literal, get_args
 import numpy as np
 from jaxtyping import Float, Float32
 
-from shapewright.classification.collection_index import CollectionIndex
 from shapewright.errors import ClassifierError
 from shapewright.progress import NULL_PROGRESS, Progress
+from shapewright.retrieval.collection_index import CollectionIndex
 
 Evidence = Literal["probabilities", "panorama", "combined"]
 EVIDENCE: Final[tuple[Evidence, ...]] = get_args(Evidence)
