@@ -18,12 +18,13 @@ import numpy as np
 
 from cli.evaluation_options import cache_folder
 from cli.sources import load_classes, load_negatives
-from shapewright.classification import Classifier, FolderStore, TrainingSettings, train_classifier
+from shapewright.classification import Classifier
 from shapewright.classification.evidence import OTHER
 from shapewright.evaluation.classification_figures import Evidence, figures_by, rankings_of, retrieval_figures
 from shapewright.evaluation.classified import Found, Judged, JudgedDataset, Said
 from shapewright.evaluation.datasets import LabelledFile, Skipped, load_each, read_dataset, spread
 from shapewright.mesh import TriangleMesh
+from shapewright.training import FolderStore, TrainingSettings, train_classifier
 
 Meshes = list[tuple[LabelledFile, TriangleMesh]]
 

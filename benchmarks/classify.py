@@ -19,16 +19,11 @@ from pathlib import Path
 import numpy as np
 
 from cli.sources import load_classes, load_negatives
-from shapewright.classification import (
-    Classifier,
-    Exemplars,
-    TrainingSettings,
-    load_classifier,
-    train_classifier,
-)
+from shapewright.classification import Classifier, Exemplars, load_classifier
 from shapewright.distances.panorama import panorama_descriptor
 from shapewright.evaluation.datasets import LabelledFile, load_each
 from shapewright.mesh import TriangleMesh
+from shapewright.training import TrainingSettings, train_classifier
 
 FACES = 5000
 SCALE = 10_000

@@ -15,12 +15,12 @@ from collections.abc import Callable
 import numpy as np
 
 from shapewright.classification import Classifier
-from shapewright.classification.export import classifier_metadata, export_classifier
-from shapewright.classification.head import Head
-from shapewright.classification.settings import TrainingSettings
 from shapewright.mesh import TriangleMesh
 from shapewright.network import FeatureExtractor, load_backbone
 from shapewright.rendering import random_views, render_images, renderer_name
+from shapewright.training.export import classifier_metadata, export_classifier
+from shapewright.training.head import Head
+from shapewright.training.settings import TrainingSettings
 
 SIDES, RINGS = 48, 33
 

@@ -18,13 +18,13 @@ from typing import Any
 import numpy as np
 
 from cli.sources import load_classes, load_negatives
-from shapewright.classification import FolderStore, TrainingSettings, train_classifier
-from shapewright.classification.chunks import chunks_of
-from shapewright.classification.sources import ModelSource
 from shapewright.modeling import CompiledModel
 from shapewright.network import FeatureExtractor, load_backbone
 from shapewright.progress import CallbackProgress, Progress
 from shapewright.rendering import render_images, renderer_name
+from shapewright.training import FolderStore, TrainingSettings, train_classifier
+from shapewright.training.chunks import chunks_of
+from shapewright.training.sources import ModelSource
 
 ELEVENTH = "stool"
 

@@ -30,11 +30,12 @@ from shapewright.progress import PartialProgress, Progress
 from shapewright.whole_file import write_whole
 
 if TYPE_CHECKING:
-    from shapewright.classification import Classifier, TrainingSettings
+    from shapewright.classification import Classifier
     from shapewright.evaluation.classification_figures import ClassificationFigures
     from shapewright.evaluation.classified import JudgedDataset
     from shapewright.evaluation.retrieval_metrics import RetrievalFigures
     from shapewright.modeling import CompiledModel
+    from shapewright.training import TrainingSettings
 
 ClassifierFile = Annotated[
     Path | None,
@@ -253,9 +254,10 @@ class Options:
 @contextmanager
 def _evaluated(options: Options, report: Path | None) -> Iterator[tuple[Evaluated, Progress]]:
     """Judge the dataset with the classifier and the baselines; the progress is what is left for a report."""
-    from shapewright.classification import TrainingSettings, load_classifier
+    from shapewright.classification import load_classifier
     from shapewright.evaluation.classified import judge_dataset
     from shapewright.evaluation.datasets import of_classes, read_dataset, spread
+    from shapewright.training import TrainingSettings
 
     started_s = time.monotonic()
     if report is not None and report.is_dir():
@@ -309,7 +311,7 @@ def _shipped(class_names: Sequence[str]) -> "Mapping[str, Sequence[CompiledModel
 
 def _settings(options: Options) -> "TrainingSettings | None":
     """What the settings file says, with the seed that was asked for."""
-    from shapewright.classification import TrainingSettings
+    from shapewright.training import TrainingSettings
 
     if options.settings_file is None:
         return None

@@ -11,8 +11,9 @@ from shapewright.progress import Progress
 from shapewright.whole_file import write_whole
 
 if TYPE_CHECKING:
-    from shapewright.classification import Classifier, TrainedClassifier, TrainingSettings
+    from shapewright.classification import Classifier
     from shapewright.modeling import CompiledModel
+    from shapewright.training import TrainedClassifier, TrainingSettings
 
 Classes = Mapping[str, "Sequence[CompiledModel]"]
 
@@ -25,7 +26,7 @@ def learn(
     cache: Path | None = None,
 ) -> "TrainedClassifier":
     """Train with the features that earlier trainings left in the cache."""
-    from shapewright.classification import FolderStore, train_classifier
+    from shapewright.training import FolderStore, train_classifier
 
     store = FolderStore(cache_folder(cache, "learning"))
     return train_classifier(classes, settings, progress, negatives=negatives, store=store)
@@ -52,9 +53,9 @@ def kept_classifier(
 ) -> "Classifier":
     """The classifier of these models and settings: of an earlier run, or trained now and kept."""
     from shapewright.classification import load_classifier
-    from shapewright.classification.versions import learning_versions
     from shapewright.errors import ClassifierError
     from shapewright.network import load_backbone
+    from shapewright.training.versions import learning_versions
 
     digests = {name: [model.model.digest for model in models] for name, models in classes.items()}
     others = [model.model.digest for model in negatives]

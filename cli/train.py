@@ -52,7 +52,8 @@ def train(
     """
     if output.suffix.lower() != ".onnx":
         raise ClassifierError("classifiers are written as .onnx", where=str(output))
-    from shapewright.classification import TrainingSettings, exemplars_file
+    from shapewright.classification import exemplars_file
+    from shapewright.training import TrainingSettings
 
     by_class = load_classes(models)
     options = {"variations": variations, "images_per_variation": images, "epochs": epochs, "seed": seed}

@@ -7,19 +7,14 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from shapewright.classification import (
-        Classification,
-        Classifier,
-        TrainedClassifier,
-        TrainingSettings,
-        train_classifier,
-    )
+    from shapewright.classification import Classification, Classifier
     from shapewright.errors import Cancelled, ShapewrightError
     from shapewright.estimation import Estimation, EstimationSettings, Query, estimate
     from shapewright.mesh import TriangleMesh
     from shapewright.mesh.file import load_mesh, parse_mesh
     from shapewright.modeling import CompiledModel, Parameter, ProceduralModel, Recorder, compile_model
     from shapewright.rendering import render_images, render_mesh
+    from shapewright.training import TrainedClassifier, TrainingSettings, train_classifier
 
 _HOMES = {
     "Cancelled": "errors",
@@ -33,8 +28,8 @@ _HOMES = {
     "Query": "estimation",
     "Recorder": "modeling",
     "ShapewrightError": "errors",
-    "TrainedClassifier": "classification",
-    "TrainingSettings": "classification",
+    "TrainedClassifier": "training",
+    "TrainingSettings": "training",
     "TriangleMesh": "mesh",
     "compile_model": "modeling",
     "estimate": "estimation",
@@ -42,7 +37,7 @@ _HOMES = {
     "parse_mesh": "mesh.file",
     "render_images": "rendering",
     "render_mesh": "rendering",
-    "train_classifier": "classification",
+    "train_classifier": "training",
 }
 
 __all__ = [

@@ -9,10 +9,10 @@ from shapewright.progress import Progress
 from workers.context import JobContext, with_tuples
 
 if TYPE_CHECKING:
-    from shapewright.classification import TrainingSettings
-    from shapewright.classification.dataset import Plan
     from shapewright.modeling import CompiledModel
     from shapewright.network import FeatureExtractor
+    from shapewright.training import TrainingSettings
+    from shapewright.training.dataset import Plan
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,9 +48,9 @@ def learning_plan(context: JobContext, classifier_id: str, progress: Progress) -
         ShapewrightError: a model or a setting of the row is not fit for it.
     """
     if classifier_id not in _kept:
-        from shapewright.classification import TrainingSettings
-        from shapewright.classification.dataset import plan_learning
         from shapewright.modeling import compile_model
+        from shapewright.training import TrainingSettings
+        from shapewright.training.dataset import plan_learning
 
         with context.database.reading() as session:
             row = catalog.get_classifier(session, classifier_id)

@@ -31,7 +31,7 @@ def request_classifier(
     Args:
         session: a writing session.
         model_ids: the models; several may share a class. Repeated ids count once.
-        settings: fields of :class:`shapewright.classification.TrainingSettings` that differ from the default.
+        settings: fields of :class:`shapewright.training.TrainingSettings` that differ from the default.
         negative_model_ids: models of things that are of none of the classes. Repeated ids count once.
         name: a name for people.
         now: the time, with a zone.

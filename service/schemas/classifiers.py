@@ -65,7 +65,7 @@ class TrainingSettingsIn(InBody):
         Raises:
             ClassifierError: they make no sense together; ``where`` is the field of the body.
         """
-        from shapewright.classification.settings import TrainingSettings  # when first needed: a quick start
+        from shapewright.training.settings import TrainingSettings  # when first needed: a quick start
 
         given = self.model_dump(exclude_none=True)
         try:

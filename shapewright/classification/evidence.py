@@ -96,3 +96,11 @@ def fit_known_curve(scores: Float[np.ndarray, " M"], is_known: Bool[np.ndarray, 
     middle = (scores[is_known].mean() + scores[~is_known].mean()) / 2
     found = minimize(loss, np.array([0.0, -middle]), method="Nelder-Mead")
     return KnownCurve(float(np.exp(found.x[0])), float(found.x[1]))
+
+
+def auroc(positive: Float[np.ndarray, " P"], negative: Float[np.ndarray, " N"]) -> float:
+    """Area under the ROC curve: the chance that a positive has a higher score than a negative (ties count half)."""
+    order = np.sort(negative)
+    below = np.searchsorted(order, positive, side="left")
+    not_above = np.searchsorted(order, positive, side="right")
+    return float((below + not_above).mean() / 2 / len(negative))

@@ -11,8 +11,7 @@ from typing import Final
 import numpy as np
 from jaxtyping import Float, Float32, Int
 
-from shapewright.classification.dataset import Plan
-from shapewright.classification.sources import SERIES, ModelSource
+from shapewright.classification.series import SERIES, series_generators, series_values
 from shapewright.distances.descriptor_files import OutdatedFileError, descriptor_header, read_descriptor_header
 from shapewright.distances.panorama import DESCRIPTOR_SIZE, PanoramaDescriptor, panorama_distances
 from shapewright.errors import ClassifierError
@@ -90,14 +89,12 @@ class Exemplars:
         Raises:
             ClassifierError: another model.
         """
-        from shapewright.classification.chunks import series_generators
-
         digest = self.digests[self.models[row]]
         if generator.model.digest != digest:
             raise ClassifierError("the exemplar belongs to another model or another version of it", where="exemplars")
         series, index = divmod(int(self.numbers[row]), SERIES)
         rng, _ = series_generators(self.seed, digest, series)
-        return np.asarray(ModelSource(generator).values(rng, SERIES)[index])
+        return np.asarray(series_values(generator, rng, SERIES)[index])
 
     def save(self, path: str | Path) -> None:
         """Write one ``.npz`` file; descriptors in half precision, which changes distances by less than 0.001.
@@ -148,30 +145,6 @@ class Exemplars:
             raise ClassifierError(f"{error}; train again", where=where) from error
         except (ValueError, KeyError, TypeError) as error:
             raise ClassifierError(f"the file holds no exemplars or is damaged: {error}", where=where) from error
-
-
-def exemplars_of(plan: Plan, descriptors: Float[np.ndarray, "A D"], seed: int, subdivision_steps: int) -> Exemplars:
-    """The exemplars of a plan's classes.
-
-    Args:
-        plan: what was drawn.
-        descriptors: of all meshes of the plan, see :func:`shapewright.classification.dataset.load_descriptors`.
-        seed: of the variations.
-        subdivision_steps: of the variations.
-    """
-    known = [share for share in plan.shares if share.label < len(plan.class_names)]
-    digests = tuple(share.source.digest for share in known)
-    counts = [share.count for share in known]
-    return Exemplars(
-        class_names=plan.class_names,
-        digests=digests,
-        seed=seed,
-        subdivision_steps=subdivision_steps,
-        classes=np.repeat([share.label for share in known], counts),
-        models=np.repeat(np.arange(len(known)), counts),
-        numbers=np.concatenate([np.arange(count) for count in counts]),
-        descriptors=descriptors[: sum(counts)],
-    )
 
 
 def _lowest(distances: Float[np.ndarray, " M"], chosen: np.ndarray) -> int:

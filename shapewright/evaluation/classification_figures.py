@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from shapewright.classification.calibration import auroc
-from shapewright.classification.evidence import OTHER
+from shapewright.classification.evidence import OTHER, auroc
 from shapewright.evaluation.classified import Judged, JudgedDataset, Said
 from shapewright.evaluation.retrieval_metrics import RetrievalFigures, figures_of, mean_figures, relevance
 from shapewright.retrieval.ranking import combined_scores

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 DEFAULT_BACKBONE = "efficientnet_lite0_int8"
 RANGES_FILE = "efficientnet_lite0_ranges.json"
-"""Ranges of activations, measured by ``python -m shapewright.classification.activation_ranges``."""
+"""Ranges of activations, measured by ``python -m shapewright.training.activation_ranges``."""
 WEIGHTS_FOLDER = Path(__file__).parent / "weights"
 """Where weights lie that no Python package ships; ``scripts/backbone-inception`` puts some there."""
 

@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 from chair_model import armchair
 
-from shapewright.classification import TrainingSettings
-from shapewright.classification.chunks import Chunk, chunk_images, series_generators
-from shapewright.classification.sources import ModelSource
+from shapewright.classification.series import series_generators
 from shapewright.distances.alignment import Pose, rotations_24
 from shapewright.distances.panorama import panorama_descriptor, panorama_descriptors
 from shapewright.distances.surface import SurfaceDistance, poisson_disk_points
@@ -18,6 +16,9 @@ from shapewright.estimation.query import Query
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling import CompiledModel, compile_model
 from shapewright.rendering import render_images
+from shapewright.training import TrainingSettings
+from shapewright.training.chunks import Chunk, chunk_images
+from shapewright.training.sources import ModelSource
 
 
 @pytest.fixture(scope="module")

@@ -12,22 +12,16 @@ import pytest
 import simple_shapes
 from simple_shapes import toy_classes
 
-from shapewright.classification import (
-    UNKNOWN,
-    Classifier,
-    TrainingSettings,
-    exemplars_file,
-    load_classifier,
-    train_classifier,
-)
-from shapewright.classification.calibration import Calibration
-from shapewright.classification.export import export_classifier
+from shapewright.classification import UNKNOWN, Classifier, exemplars_file, load_classifier
 from shapewright.classification.file_format import FORMAT_VERSION
-from shapewright.classification.head import Head
-from shapewright.classification.negatives import random_assembly
 from shapewright.distances.panorama import panorama_descriptor
 from shapewright.errors import ClassifierError
 from shapewright.network import load_backbone
+from shapewright.training import TrainingSettings, train_classifier
+from shapewright.training.calibration import Calibration
+from shapewright.training.export import export_classifier
+from shapewright.training.head import Head
+from shapewright.training.negatives import random_assembly
 
 SETTINGS = TrainingSettings(
     variations=24, images_per_variation=4, image_size=128, negatives=40, held_out=0.25, epochs=25
@@ -185,8 +179,8 @@ def test_plain_onnxruntime_reads_the_file(trained, pictures_alone):
 def test_the_graph_computes_the_trained_head():
     # Torch's head and ONNX Runtime's graph agree, temperature included.
     rng = np.random.default_rng(0)
-    from shapewright.classification.export import classifier_metadata
     from shapewright.network import FeatureExtractor
+    from shapewright.training.export import classifier_metadata
 
     backbone = load_backbone()
     settings = TrainingSettings(image_size=64)
@@ -273,19 +267,8 @@ mesh = TriangleMesh(np.eye(4, 3), np.array([[0, 1, 2], [0, 1, 3], [1, 2, 3], [0,
 answer = load_classifier({str(path)!r}).classify(mesh, views=2)
 assert answer.distances is not None
 print(answer.class_name)
-assert not {{"torch", "onnx"}} & set(sys.modules)
+assert not {{"torch", "onnx", "shapewright.training"}} & set(sys.modules)
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip() in ("bench", "cross", "block")
-
-
-def test_settings_need_no_heavy_package():
-    script = """
-import sys
-from shapewright.classification import TrainingSettings
-TrainingSettings()
-assert not {"torch", "onnx", "onnxruntime", "moderngl"} & set(sys.modules)
-"""
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr

@@ -11,6 +11,7 @@ from hypothesis.extra import numpy as arrays
 from shapewright.classification.evidence import (
     FLOOR,
     KnownCurve,
+    auroc,
     class_probabilities,
     class_scores,
     fit_known_curve,
@@ -19,6 +20,7 @@ from shapewright.classification.evidence import (
 SHARES = arrays.arrays(np.float64, 5, elements=st.floats(0.001, 1.0))
 DISTANCES = arrays.arrays(np.float64, 5, elements=st.floats(0.0, 3.0))
 PLACES = st.integers(0, 4)
+SCORES = st.lists(st.integers(0, 6).map(float), min_size=1, max_size=25)
 
 
 @given(SHARES, DISTANCES, PLACES, st.floats(0.01, 0.5))
@@ -104,3 +106,15 @@ def test_the_curve_rises_and_survives_a_file(slope, intercept, score, step) -> N
 def test_a_damaged_curve_is_refused(values) -> None:
     with pytest.raises((KeyError, TypeError, ValueError)):
         KnownCurve.from_dict(values)
+
+
+@given(SCORES, SCORES)
+def test_the_area_is_the_share_of_pairs_in_order(positive: list[float], negative: list[float]) -> None:
+    pairs = [(p > n) + 0.5 * (p == n) for p in positive for n in negative]
+    assert auroc(np.array(positive), np.array(negative)) == pytest.approx(np.mean(pairs))
+
+
+@given(SCORES, SCORES)
+def test_exchanging_the_kinds_turns_the_area_around(positive: list[float], negative: list[float]) -> None:
+    one, other = np.array(positive), np.array(negative)
+    assert auroc(one, other) + auroc(other, one) == pytest.approx(1.0)

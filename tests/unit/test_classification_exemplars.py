@@ -10,13 +10,14 @@ from hypothesis import strategies as st
 from simple_shapes import BoxModel, toy_classes
 
 from models_store.library.shipped import load_shipped
-from shapewright.classification import Exemplars, TrainingSettings
-from shapewright.classification.dataset import plan_learning
-from shapewright.classification.exemplars import exemplars_of
+from shapewright.classification import Exemplars
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor
 from shapewright.errors import ClassifierError
 from shapewright.mapped_arrays import read_arrays, read_header, write_arrays
 from shapewright.modeling import compile_model
+from shapewright.training import TrainingSettings
+from shapewright.training.dataset import plan_learning
+from shapewright.training.exemplars import exemplars_of
 
 SETTINGS = TrainingSettings(variations=5, negatives=0, subdivision_steps=1, seed=4)
 NAMES = ("classes", "models", "numbers", "descriptors")

@@ -5,9 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from shapewright.classification import Classifier, TrainingSettings, train_classifier
+from shapewright.classification import Classifier
 from shapewright.mesh.file import load_mesh
 from shapewright.modeling import compile_model
+from shapewright.training import TrainingSettings, train_classifier
 
 QUERIES = {"m495.off": "glass_with_stem", "m872.off": "table", "m707.off": "sword"}
 

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 from models_store.library.shipped import load_shipped
-from shapewright.classification import Classifier, TrainingSettings, train_classifier
+from shapewright.classification import Classifier
 from shapewright.classification.synthesis import fit_class
 from shapewright.distances.panorama import panorama_descriptor, panorama_distance
 from shapewright.errors import ClassifierError
 from shapewright.modeling import compile_model
+from shapewright.training import TrainingSettings, train_classifier
 
 SETTINGS = TrainingSettings(variations=16, images_per_variation=2, image_size=96, negatives=0, epochs=10)
 

@@ -8,12 +8,12 @@ import simple_shapes
 import torch
 from torch.nn import functional
 
-from shapewright.classification import TrainingSettings
 from shapewright.errors import ClassifierError
 from shapewright.network import FeatureExtractor, inception, load_backbone
 from shapewright.network.backbone import BACKBONES, WEIGHTS_FOLDER, Backbone
 from shapewright.network.graphs import features_graph
 from shapewright.rendering import random_views, render_images
+from shapewright.training import TrainingSettings
 
 
 class KerasInception:

@@ -9,14 +9,14 @@ import onnxruntime
 import pytest
 import simple_shapes
 
-from shapewright.classification import TrainingSettings
-from shapewright.classification.calibration import Calibration
-from shapewright.classification.export import classifier_metadata, export_classifier
-from shapewright.classification.head import Head
 from shapewright.network import FeatureExtractor, load_backbone
 from shapewright.network.backbone import RANGES_FILE, Backbone, efficientnet_lite0_layers
 from shapewright.network.quantized_graph import quantized_features_graph, range_names
 from shapewright.rendering import random_views, render_images
+from shapewright.training import TrainingSettings
+from shapewright.training.calibration import Calibration
+from shapewright.training.export import classifier_metadata, export_classifier
+from shapewright.training.head import Head
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from jaxtyping import TypeCheckError
 
-from shapewright.classification.calibration import calibration_error
+from shapewright.training.calibration import calibration_error
 
 
 def test_shapes_that_do_not_agree_are_noticed() -> None:

@@ -26,7 +26,6 @@ from service.schemas.estimations import EstimationIn, EstimationResultOut, Estim
 from service.schemas.jobs import RESULT_PATHS
 from service.schemas.models import ParameterOut
 from service.schemas.retrievals import Evidence
-from shapewright.classification import TrainingSettings
 from shapewright.distances.alignment import Pose
 from shapewright.estimation import (
     Alternative,
@@ -51,6 +50,7 @@ from shapewright.modeling.units import KINDS
 from shapewright.rendering import STYLES
 from shapewright.rendering.styles import FRAMINGS
 from shapewright.retrieval.ranking import EVIDENCE
+from shapewright.training import TrainingSettings
 
 
 def test_the_published_descriptions_are_fresh() -> None:

@@ -9,14 +9,14 @@ import structlog
 
 from models_store.artifacts import ArtifactStore
 from models_store.errors import ArtifactError, ArtifactNotFoundError
-from shapewright.classification.array_store import mapped_array, npy_bytes
+from shapewright.training.array_store import mapped_array, npy_bytes
 from workers.context import JobContext
 
 log = structlog.get_logger(__name__)
 
 
 class ArtifactArrays:
-    """Keeps arrays in the artefact store (:class:`shapewright.classification.ArrayStore`).
+    """Keeps arrays in the artefact store (:class:`shapewright.training.ArrayStore`).
 
     What finds no room there stays in memory for as long as the object lives: a full disk costs the next training
     time, but this one nothing.

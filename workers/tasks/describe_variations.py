@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def describe_variations(context: JobContext) -> Outcome:
     """Leave the features, and the descriptors if wanted, where the training looks for them."""
-    from shapewright.classification.chunks import descriptors_key, features_key, store_chunk
+    from shapewright.training.chunks import descriptors_key, features_key, store_chunk
 
     helping = Helping(context)
     work = learning_plan(context, str(context.claim.payload["classifier_id"]), helping)

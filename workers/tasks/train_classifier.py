@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def train_classifier(context: JobContext) -> Outcome:
     """Train on all models of the classifier's row, grouped by class; what was computed before is read again."""
-    from shapewright.classification.training import IMAGES_SHARE, learn
+    from shapewright.training.learning import IMAGES_SHARE, learn
 
     classifier_id = str(context.claim.payload["classifier_id"])
     work = learning_plan(context, classifier_id, context.progress)
@@ -49,7 +49,7 @@ def train_classifier(context: JobContext) -> Outcome:
 
 def _draw_and_describe(context: JobContext, work: LearningPlan, store: ArtifactArrays, progress: Progress) -> None:
     """Compute what the store lacks, together with workers that have nothing else to do."""
-    from shapewright.classification.chunks import is_stored, store_chunk
+    from shapewright.training.chunks import is_stored, store_chunk
 
     def missing() -> list[int]:
         backbone = work.extractor.backbone

@@ -21,15 +21,16 @@ from typing import Final
 import numpy as np
 from jaxtyping import Float16, Float32, UInt8
 
-from shapewright.classification.array_store import ArrayStore
-from shapewright.classification.settings import TrainingSettings
-from shapewright.classification.sources import MESHES_VERSION, SERIES, Source
+from shapewright.classification.series import SERIES, series_generators
 from shapewright.mesh import TriangleMesh
 from shapewright.network.backbone import Backbone
 from shapewright.network.features import FeatureExtractor
 from shapewright.progress import NULL_PROGRESS, Progress
 from shapewright.rendering.images import render_images
 from shapewright.rendering.views import random_views
+from shapewright.training.array_store import ArrayStore
+from shapewright.training.settings import TrainingSettings
+from shapewright.training.sources import MESHES_VERSION, Source
 
 BLOCK: Final = 8
 """Meshes that are drawn and described together; bounds the memory."""
@@ -47,7 +48,7 @@ class Chunk:
     Args:
         source: gives the meshes.
         number: which series, from 0.
-        count: at most :data:`shapewright.classification.sources.SERIES`.
+        count: at most :data:`shapewright.classification.series.SERIES`.
     """
 
     source: Source
@@ -67,12 +68,6 @@ class Chunk:
 
     def _generators(self, settings: TrainingSettings) -> tuple[np.random.Generator, np.random.Generator]:
         return series_generators(settings.seed, self.source.digest, self.number)
-
-
-def series_generators(seed: int, digest: str, number: int) -> tuple[np.random.Generator, np.random.Generator]:
-    """The random streams of the meshes and of the views of one series of a source."""
-    first, second = np.random.default_rng([seed, int(digest[:16], 16), number]).spawn(2)
-    return first, second
 
 
 def chunks_of(source: Source, count: int) -> list[Chunk]:

@@ -12,14 +12,13 @@ from typing import Final, Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Float
 
-from shapewright.classification import negatives
+from shapewright.classification.series import series_values
 from shapewright.estimation.generator import InstanceGenerator
 from shapewright.mesh import TriangleMesh
+from shapewright.training import negatives
 
 MESHES_VERSION: Final = 1
 """Raise it when the same model gives other variations for the same generator, or they have other surfaces."""
-SERIES: Final = 64
-"""Meshes that one random generator gives at most; the shorter series are beginnings of the longer ones."""
 
 
 @runtime_checkable
@@ -37,7 +36,7 @@ class Source(Protocol):
         ...
 
     def meshes(self, rng: np.random.Generator, count: int, steps: int) -> Iterator[TriangleMesh]:
-        """The first ``count`` (at most :data:`SERIES`) random meshes, subdivided ``steps`` times if they can be."""
+        """The first ``count`` random meshes of a series, subdivided ``steps`` times if they can be."""
         ...
 
 
@@ -66,7 +65,7 @@ class ModelSource:
 
     def values(self, rng: np.random.Generator, count: int) -> Float[np.ndarray, "B P"]:
         """The parameter values of the meshes that the same generator gives."""
-        values = self.generator.random_values(rng, SERIES)[:count]
+        values = series_values(self.generator, rng, count)
         return values if self.varied else np.ones_like(values)
 
     def meshes(self, rng: np.random.Generator, count: int, steps: int) -> Iterator[TriangleMesh]:

@@ -1,22 +1,24 @@
 """Training: toy classes are learned, repeatably, from variations that are kept apart; progress and metadata tell."""
 
 import json
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from simple_shapes import BoxModel, toy_classes
 
-from shapewright.classification import MemoryStore, TrainingSettings, train_classifier
-from shapewright.classification.calibration import calibration_error
-from shapewright.classification.chunks import BLOCK, chunk_images, features_key
-from shapewright.classification.dataset import load_features, plan_learning
-from shapewright.classification.head import train_head
-from shapewright.classification.sources import ModelSource
-from shapewright.classification.training import draw_and_describe, held_out_metrics
 from shapewright.errors import Cancelled, ClassifierError
 from shapewright.network import FeatureExtractor, load_backbone
 from shapewright.progress import CallbackProgress
+from shapewright.training import MemoryStore, TrainingSettings, train_classifier
+from shapewright.training.calibration import calibration_error
+from shapewright.training.chunks import BLOCK, chunk_images, features_key
+from shapewright.training.dataset import load_features, plan_learning
+from shapewright.training.head import train_head
+from shapewright.training.learning import draw_and_describe, held_out_metrics
+from shapewright.training.sources import ModelSource
 
 SMALL = TrainingSettings(
     variations=12, images_per_variation=3, image_size=128, negatives=6, held_out=0.25, epochs=25, seed=3
@@ -278,6 +280,17 @@ def test_settings_from_json_are_checked(name, value):
     with pytest.raises(ClassifierError) as caught:
         TrainingSettings.from_dict({name: value})
     assert caught.value.where == name
+
+
+def test_settings_need_no_heavy_package():
+    script = """
+import sys
+from shapewright.training import TrainingSettings
+TrainingSettings()
+assert not {"torch", "onnx", "onnxruntime", "moderngl"} & set(sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 def test_settings_from_json_keep_defaults():

@@ -4,12 +4,12 @@ import json
 from dataclasses import dataclass
 from typing import Any, Final
 
-from shapewright.classification.calibration import Calibration
 from shapewright.classification.file_format import FORMAT, FORMAT_VERSION, METADATA_KEY
-from shapewright.classification.head import Head
-from shapewright.classification.settings import TrainingSettings
 from shapewright.network.backbone import Backbone
 from shapewright.network.graphs import classifier_graph
+from shapewright.training.calibration import Calibration
+from shapewright.training.head import Head
+from shapewright.training.settings import TrainingSettings
 
 NORMALISATIONS: Final[dict[str, str]] = {
     "paper": "vertex mean to the origin, coordinates within [-1, 1]",

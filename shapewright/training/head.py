@@ -9,9 +9,9 @@ import torch
 from jaxtyping import Float, Int
 from torch.nn import functional
 
-from shapewright.classification.dataset import FeatureSet
-from shapewright.classification.settings import TrainingSettings
 from shapewright.progress import NULL_PROGRESS, Progress
+from shapewright.training.dataset import FeatureSet
+from shapewright.training.settings import TrainingSettings
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,11 +8,11 @@ LEARNING_VERSION: Final = 2
 
 def learning_versions() -> list[int]:
     """What a classifier that is kept has to have been made by, to be worth keeping."""
-    from shapewright.classification import negatives
-    from shapewright.classification.chunks import PICTURES_VERSION
     from shapewright.classification.file_format import FORMAT_VERSION
-    from shapewright.classification.sources import MESHES_VERSION
     from shapewright.distances import panorama
+    from shapewright.training import negatives
+    from shapewright.training.chunks import PICTURES_VERSION
+    from shapewright.training.sources import MESHES_VERSION
 
     return [
         FORMAT_VERSION,

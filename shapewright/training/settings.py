@@ -11,7 +11,7 @@ from shapewright.rendering.styles import FRAMINGS, SCALE_RANGE, STYLES, WINDOW, 
 
 @dataclass(frozen=True)
 class TrainingSettings:
-    """Settings of :func:`shapewright.classification.train_classifier`.
+    """Settings of :func:`shapewright.training.train_classifier`.
 
     Counts are the paper's (section 3.2). How pictures are framed and shaded is ours, as it measured better on real
     meshes; :meth:`paper` has the paper's.

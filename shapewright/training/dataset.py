@@ -9,20 +9,20 @@ from typing import Final
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from shapewright.classification.array_store import ArrayStore
-from shapewright.classification.chunks import Chunk, chunks_of, descriptors_key, features_key
 from shapewright.classification.evidence import OTHER, UNKNOWN
-from shapewright.classification.settings import TrainingSettings
-from shapewright.classification.sources import (
+from shapewright.errors import ClassifierError
+from shapewright.estimation.generator import InstanceGenerator
+from shapewright.network.backbone import Backbone
+from shapewright.training.array_store import ArrayStore
+from shapewright.training.chunks import Chunk, chunks_of, descriptors_key, features_key
+from shapewright.training.settings import TrainingSettings
+from shapewright.training.sources import (
     AssemblySource,
     DistortedSource,
     MixedSource,
     ModelSource,
     Source,
 )
-from shapewright.errors import ClassifierError
-from shapewright.estimation.generator import InstanceGenerator
-from shapewright.network.backbone import Backbone
 
 OTHERS: Final = 8
 """Fewer models of no class share the objects as so many would: a model that comes or goes changes no other's."""

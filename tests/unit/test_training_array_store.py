@@ -7,8 +7,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from shapewright.classification import FolderStore, MemoryStore
-from shapewright.classification.array_store import mapped_array, npy_bytes
+from shapewright.training import FolderStore, MemoryStore
+from shapewright.training.array_store import mapped_array, npy_bytes
 
 KEY = "features/some-network/0-0-12.npy"
 ARRAY = np.arange(60, dtype=np.float16).reshape(3, 4, 5)

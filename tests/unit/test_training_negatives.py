@@ -6,8 +6,8 @@ import simple_shapes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from shapewright.classification.negatives import distorted, joined, mixed, random_assembly
 from shapewright.mesh import TriangleMesh
+from shapewright.training.negatives import distorted, joined, mixed, random_assembly
 
 SEEDS = st.integers(0, 2**32 - 1)
 MAKERS = {

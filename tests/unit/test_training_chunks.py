@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 from simple_shapes import BoxModel, toy_classes
 
-from shapewright.classification import FolderStore, MemoryStore, TrainingSettings
-from shapewright.classification import training as training_module
-from shapewright.classification.array_store import ArrayStore
-from shapewright.classification.chunks import (
+from shapewright.classification.series import SERIES
+from shapewright.errors import Cancelled, ClassifierError
+from shapewright.network import FeatureExtractor, load_backbone
+from shapewright.progress import CallbackProgress
+from shapewright.training import FolderStore, MemoryStore, TrainingSettings, learning
+from shapewright.training.array_store import ArrayStore
+from shapewright.training.chunks import (
     Chunk,
     chunk_images,
     chunks_of,
@@ -18,19 +21,15 @@ from shapewright.classification.chunks import (
     is_stored,
     store_chunk,
 )
-from shapewright.classification.dataset import load_features, plan_learning
-from shapewright.classification.sources import (
-    SERIES,
+from shapewright.training.dataset import load_features, plan_learning
+from shapewright.training.learning import train_classifier
+from shapewright.training.sources import (
     AssemblySource,
     DistortedSource,
     MixedSource,
     ModelSource,
     Source,
 )
-from shapewright.classification.training import train_classifier
-from shapewright.errors import Cancelled, ClassifierError
-from shapewright.network import FeatureExtractor, load_backbone
-from shapewright.progress import CallbackProgress
 
 SMALL = TrainingSettings(
     variations=6, images_per_variation=2, image_size=64, negatives=2, exemplars=False, held_out=0.25, epochs=5, seed=3
@@ -52,7 +51,7 @@ class CountingExtractor(FeatureExtractor):
 @pytest.fixture
 def seen(monkeypatch) -> list[int]:
     """Numbers of pictures that networks were asked about from now on."""
-    monkeypatch.setattr(training_module, "FeatureExtractor", CountingExtractor)
+    monkeypatch.setattr(learning, "FeatureExtractor", CountingExtractor)
     monkeypatch.setattr(CountingExtractor, "seen", [])
     return CountingExtractor.seen
 

@@ -2,29 +2,13 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from simple_shapes import BoxModel, toy_classes
 
-from shapewright.classification import MemoryStore, TrainingSettings, train_classifier
-from shapewright.classification.calibration import MAX_TEMPERATURE, Calibration, auroc, calibrate, fit_temperature
-from shapewright.classification.chunks import features_key
-from shapewright.classification.dataset import load_features, plan_learning
 from shapewright.network import load_backbone
-
-SCORES = st.lists(st.integers(0, 6).map(float), min_size=1, max_size=25)
-
-
-@given(SCORES, SCORES)
-def test_the_area_is_the_share_of_pairs_in_order(positive: list[float], negative: list[float]) -> None:
-    pairs = [(p > n) + 0.5 * (p == n) for p in positive for n in negative]
-    assert auroc(np.array(positive), np.array(negative)) == pytest.approx(np.mean(pairs))
-
-
-@given(SCORES, SCORES)
-def test_exchanging_the_kinds_turns_the_area_around(positive: list[float], negative: list[float]) -> None:
-    one, other = np.array(positive), np.array(negative)
-    assert auroc(one, other) + auroc(other, one) == pytest.approx(1.0)
+from shapewright.training import MemoryStore, TrainingSettings, train_classifier
+from shapewright.training.calibration import MAX_TEMPERATURE, Calibration, calibrate, fit_temperature
+from shapewright.training.chunks import features_key
+from shapewright.training.dataset import load_features, plan_learning
 
 
 def test_temperature_softens_and_never_sharpens() -> None:

@@ -1,6 +1,6 @@
 """Measures the ranges of the backbone's activations that its 8-bit form needs, and writes them beside it.
 
-``python -m shapewright.classification.activation_ranges``. The pictures show random assemblies in the default style, so
+``python -m shapewright.training.activation_ranges``. The pictures show random assemblies in the default style, so
 the ranges depend on no procedural model. They are kept in the repository: every machine then has the same graph.
 """
 
@@ -11,14 +11,14 @@ import numpy as np
 import onnx
 from onnx import TensorProto, helper
 
-from shapewright.classification.chunks import chunk_images, chunks_of
-from shapewright.classification.settings import TrainingSettings
-from shapewright.classification.sources import AssemblySource
 from shapewright.network import backbone
 from shapewright.network.backbone import RANGES_FILE, efficientnet_lite0_layers, load_backbone
 from shapewright.network.ports import IMAGES
 from shapewright.network.quantized_graph import Ranges, range_names
 from shapewright.network.session import make_session
+from shapewright.training.chunks import chunk_images, chunks_of
+from shapewright.training.settings import TrainingSettings
+from shapewright.training.sources import AssemblySource
 
 OBJECTS = 48
 VIEWS = 2

@@ -6,18 +6,19 @@ from typing import Any
 
 import numpy as np
 
-from shapewright.classification.array_store import ArrayStore, MemoryStore
-from shapewright.classification.calibration import calibrate, calibration_error
-from shapewright.classification.chunks import is_stored, store_chunk
-from shapewright.classification.dataset import FeatureSet, Plan, load_descriptors, load_features, plan_learning
-from shapewright.classification.exemplars import Exemplars, exemplars_of
-from shapewright.classification.export import ModelReference, classifier_metadata, export_classifier
-from shapewright.classification.head import Head, train_head
-from shapewright.classification.settings import TrainingSettings
+from shapewright.classification.exemplars import Exemplars
 from shapewright.estimation.generator import InstanceGenerator
 from shapewright.network.backbone import load_backbone
 from shapewright.network.features import FeatureExtractor
 from shapewright.progress import NULL_PROGRESS, PartialProgress, Progress
+from shapewright.training.array_store import ArrayStore, MemoryStore
+from shapewright.training.calibration import calibrate, calibration_error
+from shapewright.training.chunks import is_stored, store_chunk
+from shapewright.training.dataset import FeatureSet, Plan, load_descriptors, load_features, plan_learning
+from shapewright.training.exemplars import exemplars_of
+from shapewright.training.export import ModelReference, classifier_metadata, export_classifier
+from shapewright.training.head import Head, train_head
+from shapewright.training.settings import TrainingSettings
 
 IMAGES_SHARE = 0.85
 """Share of the work that drawing and describing takes, for the progress shown."""

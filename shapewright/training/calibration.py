@@ -14,13 +14,13 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy.optimize import minimize_scalar
 
-from shapewright.classification.dataset import FeatureSet, Plan
-from shapewright.classification.evidence import KnownCurve, class_probabilities, class_scores, fit_known_curve
+from shapewright.classification.evidence import KnownCurve, auroc, class_probabilities, class_scores, fit_known_curve
 from shapewright.classification.exemplars import Exemplars
-from shapewright.classification.head import softmax, train_head
-from shapewright.classification.settings import TrainingSettings
 from shapewright.distances.panorama import PanoramaDescriptor
 from shapewright.progress import NULL_PROGRESS, PartialProgress, Progress
+from shapewright.training.dataset import FeatureSet, Plan
+from shapewright.training.head import softmax, train_head
+from shapewright.training.settings import TrainingSettings
 
 FOLDS: Final = 3
 MAX_TEMPERATURE: Final = 20.0
@@ -164,14 +164,6 @@ def fit_temperature(values: Float[np.ndarray, "N C"], labels: Int[np.ndarray, " 
 
     best = minimize_scalar(loss, bounds=(0.0, np.log(MAX_TEMPERATURE)), method="bounded")
     return float(np.exp(best.x)) if loss(float(best.x)) < loss(0.0) else 1.0
-
-
-def auroc(positive: Float[np.ndarray, " P"], negative: Float[np.ndarray, " N"]) -> float:
-    """Area under the ROC curve: the chance that a positive has a higher score than a negative (ties count half)."""
-    order = np.sort(negative)
-    below = np.searchsorted(order, positive, side="left")
-    not_above = np.searchsorted(order, positive, side="right")
-    return float((below + not_above).mean() / 2 / len(negative))
 
 
 def _folds(plan: Plan) -> Int[np.ndarray, " S"]:
