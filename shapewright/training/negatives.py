@@ -4,7 +4,6 @@ Three kinds: *assemblies* of random primitives, instances *distorted* beyond rec
 *mixed*. Nothing here depends on a real mesh.
 """
 
-from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -12,6 +11,7 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from shapewright.mesh import TriangleMesh
+from shapewright.mesh.joining import joined
 
 VERSION: Final = 1
 """Raise it with every change of the shapes: what was stored of the old ones is then left alone."""
@@ -62,15 +62,6 @@ def mixed(first: TriangleMesh, second: TriangleMesh, rng: np.random.Generator) -
         cut = kept[:, 2].min() if keep_above else kept[:, 2].max()
         halves.append(TriangleMesh(kept - np.array([*kept[:, :2].mean(axis=0), cut]), renumbered.reshape(-1, 3)))
     return joined(halves)
-
-
-def joined(parts: Sequence[TriangleMesh]) -> TriangleMesh:
-    """Several meshes as one."""
-    starts = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
-    return TriangleMesh(
-        np.concatenate([part.vertices for part in parts]),
-        np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=True)]),
-    )
 
 
 def _centred(points: Float[np.ndarray, "V 3"]) -> Float[np.ndarray, "V 3"]:

@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from shapewright.mesh import TriangleMesh
-from shapewright.training.negatives import distorted, joined, mixed, random_assembly
+from shapewright.mesh.joining import joined
+from shapewright.training.negatives import distorted, mixed, random_assembly
 
 SEEDS = st.integers(0, 2**32 - 1)
 MAKERS = {
