@@ -1,5 +1,6 @@
 """Cutting of long edges: the same surface with smaller triangles, without gaps where triangles share an edge."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -15,6 +16,8 @@ _MIDDLE: Final = (0.35, 0.65)
 """Where a random cut lies, as a share of the edge."""
 
 Faces = Int[np.ndarray, "F 3"]
+ShareAt = Callable[[Float[np.ndarray, "E 3"]], Float[np.ndarray, " E"]]
+"""Takes the middles of edges; returns how probable it is that each of them is cut."""
 
 
 def cut_edges(mesh: TriangleMesh, longest: float, rng: np.random.Generator | None = None) -> TriangleMesh:
@@ -32,10 +35,14 @@ def cut_edges(mesh: TriangleMesh, longest: float, rng: np.random.Generator | Non
     return mesh
 
 
-def cut_some_edges(mesh: TriangleMesh, share: float, rng: np.random.Generator) -> TriangleMesh:
-    """Cut about this share of the edges, whichever, each anywhere near its middle; the surface stays as it is."""
+def cut_some_edges(mesh: TriangleMesh, share: float | ShareAt, rng: np.random.Generator) -> TriangleMesh:
+    """Cut about this share of the edges, whichever, each anywhere near its middle; the surface stays as it is.
+
+    The share may depend on the place of an edge, so that part of a surface is divided more finely.
+    """
     edges = _Edges.of(mesh)
-    return edges.cut(rng.random(len(edges.ends)) < share, rng)
+    chances = share(mesh.vertices[edges.ends].mean(axis=1)) if callable(share) else share
+    return edges.cut(rng.random(len(edges.ends)) < chances, rng)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,11 +2,11 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import NoReturn, Protocol, runtime_checkable
 
 import numpy as np
 
-from shapewright.errors import MeshError
+from shapewright.errors import EvaluationError, MeshError
 from shapewright.estimation.query import Query
 from shapewright.evaluation.corruptions import Corruption
 from shapewright.evaluation.datasets import LabelledFile, Skipped, load_each
@@ -29,15 +29,30 @@ class Cases(Protocol):
 
 @dataclass(frozen=True)
 class Damage:
-    """A corruption at one strength, the same for a query whenever it is read or drawn."""
+    """A corruption at one strength, the same for a query whenever it is read or drawn.
+
+    Raises:
+        EvaluationError: the corruption leaves no faces; an estimation needs them.
+    """
 
     corruption: Corruption
     strength: float
     seed: int
 
+    def __post_init__(self) -> None:
+        if not self.corruption.has_faces:
+            self._refuse()
+
     def __call__(self, mesh: TriangleMesh, number: int) -> TriangleMesh:
         """Corrupt the mesh of the query with this number."""
-        return self.corruption(mesh, self.strength, np.random.default_rng([self.seed, number, 2]))
+        damaged = self.corruption(mesh, self.strength, np.random.default_rng([self.seed, number, 2]))
+        if not isinstance(damaged, TriangleMesh):
+            self._refuse()
+        return damaged
+
+    def _refuse(self) -> NoReturn:
+        message = f"expected a corruption that leaves a mesh with faces, got {self.corruption.name!r}"
+        raise EvaluationError(message, where="corruption")
 
 
 @dataclass(frozen=True)

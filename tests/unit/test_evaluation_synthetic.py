@@ -391,3 +391,9 @@ def test_cases_come_again_by_name_and_are_damaged_alike() -> None:
     assert clean.truth is not None
     assert wanted.truth is not None
     np.testing.assert_array_equal(clean.truth.values, wanted.truth.values)
+
+
+def test_a_corruption_that_leaves_no_faces_is_refused() -> None:
+    with pytest.raises(EvaluationError, match="with faces, got 'points'") as caught:
+        Damage(CORRUPTIONS["points"], 2048.0, seed=0)
+    assert caught.value.where == "corruption"

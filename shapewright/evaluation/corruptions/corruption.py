@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from shapewright.errors import EvaluationError
-from shapewright.mesh import TriangleMesh
+from shapewright.mesh import PointCloud, TriangleMesh
 
-Corrupt = Callable[[TriangleMesh, float, np.random.Generator], TriangleMesh]
-"""Takes a mesh, a strength and a source of all choices; returns a corrupted mesh in the same coordinates."""
+Corrupt = Callable[[TriangleMesh, float, np.random.Generator], TriangleMesh | PointCloud]
+"""Takes a mesh, a strength and a source of all choices; returns what is left of it, in the same coordinates."""
 
 
 @dataclass(frozen=True)
@@ -23,6 +23,7 @@ class Corruption:
         default: the strength that is used unless another is given.
         least, most: range of the strength.
         corrupt: what does it.
+        has_faces: whether it returns a mesh; otherwise it returns a point cloud.
     """
 
     name: str
@@ -32,6 +33,7 @@ class Corruption:
     least: float
     most: float
     corrupt: Corrupt
+    has_faces: bool = True
 
     def checked(self, strength: float | None) -> float:
         """Return the strength, the default for ``None``.
@@ -45,14 +47,21 @@ class Corruption:
             raise EvaluationError(f"expected a strength of {self.name!r} {limits}, got {chosen:g}", where="strength")
         return chosen
 
-    def __call__(self, mesh: TriangleMesh, strength: float | None, rng: np.random.Generator) -> TriangleMesh:
-        """Return a corrupted mesh in the same coordinates.
+    def __call__(
+        self, mesh: TriangleMesh, strength: float | None, rng: np.random.Generator
+    ) -> TriangleMesh | PointCloud:
+        """Return a corrupted mesh, or a point cloud, in the same coordinates.
 
         Raises:
             EvaluationError: the strength is out of range.
-            MeshError: the mesh has no extent or no area.
+            MeshError: the mesh has no extent or no area, or nothing of it is left.
         """
         return self.corrupt(mesh, self.checked(strength), rng)
+
+    @property
+    def summary(self) -> str:
+        """Name, meaning of the strength, and the three strengths, as one line of a list."""
+        return f"{self.name}: {self.meaning} ({', '.join(f'{strength:g}' for strength in self.strengths)})"
 
 
 def diagonal(mesh: TriangleMesh) -> float:
