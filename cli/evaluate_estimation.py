@@ -33,12 +33,21 @@ class Scale(StrEnum):
 
 
 class CorruptionName(StrEnum):
-    """What can be done to the meshes."""
+    """What can be done to the meshes: every corruption that leaves faces."""
 
     noise = "noise"
     holes = "holes"
     decimated = "decimated"
     half = "half"
+    flipped = "flipped"
+    clustered = "clustered"
+    outliers = "outliers"
+    dust = "dust"
+    ground = "ground"
+    stitched = "stitched"
+    closed = "closed"
+    voxels = "voxels"
+    uneven = "uneven"
 
 
 class EstimatorChoice(StrEnum):
@@ -89,9 +98,21 @@ def estimation(
     models, or of those of --classes, in turn: in any orientation, at any scale and place, with a surface that is cut
     into other triangles.
 
-    What a strength means: noise, the standard deviation as a share of the diagonal (0.002, 0.005, 0.01); holes, the
-    share of the area that is missing (0.1, 0.2, 0.4); decimated, the share of the faces that are kept (0.3, 0.1, 0.03);
-    half, one depth picture from a random direction, its pixels a side (256, 128, 64).
+    What a strength means, and three that are usual, the mildest first:
+
+      noise: standard deviation of the noise along each axis, as a share of the diagonal (0.002, 0.005, 0.01)
+      holes: share of the area that is missing (0.1, 0.2, 0.4)
+      decimated: share of the faces that are kept (0.3, 0.1, 0.03)
+      half: pixels along each side of the depth picture that is all there is (256, 128, 64)
+      flipped: share of the faces that are turned over (0.25, 0.5, 1)
+      clustered: cells along the longest side of the grid that vertices are rounded to (48, 24, 16)
+      outliers: small triangles that float about the object (50, 150, 500)
+      dust: distance of the farthest of a few small clumps, as a share of the diagonal (0.1, 0.4, 1)
+      ground: side of the square sheet below the object, in longest sides of the bounding box (1, 1.5, 2)
+      stitched: shift of each of six one-sided scans, as a share of the diagonal (0.005, 0.015, 0.03)
+      closed: voxels along the longest side of the grid on which the surface is closed (96, 64, 40)
+      voxels: voxels along the longest side of the bounding box (64, 40, 24)
+      uneven: factor by which vertices are denser on a third of the surface (2, 4, 16)
 
     Examples:
 

@@ -8,7 +8,9 @@ from command_line import shapewright
 from made_up_estimator import base_answer
 from small_dataset import write_dataset
 
+from cli.evaluate_estimation import CorruptionName, estimation
 from models_store.library.shipped import load_shipped
+from shapewright.evaluation.corruptions import CORRUPTIONS
 from shapewright.modeling import compile_model
 
 SETTINGS = {
@@ -132,3 +134,11 @@ def test_refusals(common: tuple[str | Path, ...], dataset: Path, tmp_path: Path)
     assert "'teapot'" in shapewright(*common, "--synthetic", "1", "--classes", "teapot").refused()
     assert "--classes: no mesh" in shapewright(*common, "--dataset", dataset, "--classes", "fish").refused()
     assert "a file is needed" in shapewright(*common, "--synthetic", "1", "--report", tmp_path).refused()
+
+
+def test_the_help_lists_every_corruption_of_meshes_and_its_strengths() -> None:
+    leaving_faces = [corruption for corruption in CORRUPTIONS.values() if corruption.has_faces]
+    assert [name.value for name in CorruptionName] == [corruption.name for corruption in leaving_faces]
+    assert estimation.__doc__ is not None
+    lines = [line.strip() for line in estimation.__doc__.splitlines()]
+    assert [line for line in lines if line.split(":")[0] in CORRUPTIONS] == [one.summary for one in leaving_faces]
