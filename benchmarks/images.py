@@ -18,6 +18,7 @@ from shapewright.classification import Classifier
 from shapewright.mesh import TriangleMesh
 from shapewright.network import FeatureExtractor, load_backbone
 from shapewright.rendering import random_views, render_images, renderer_name
+from shapewright.training.calibration import Calibration
 from shapewright.training.export import classifier_metadata, export_classifier
 from shapewright.training.head import Head
 from shapewright.training.settings import TrainingSettings
@@ -82,9 +83,9 @@ def main() -> None:
     backbone = load_backbone()
     extractor = FeatureExtractor(backbone)
     features_s = median_seconds(lambda: extractor(images), options.repeats)
-    head = Head(rng.normal(size=(10, 1280)).astype(np.float32), np.zeros(10, np.float32), 1.0, {}, 0)
+    head = Head(rng.normal(size=(10, 1280)).astype(np.float32), np.zeros(10, np.float32), 10, 1.0, {}, 0)
     names = tuple(f"class_{number}" for number in range(10))
-    metadata = classifier_metadata(names, (), backbone, TrainingSettings(), {})
+    metadata = classifier_metadata(names, (), backbone, TrainingSettings(), {}, Calibration(1.0, None, None, {}))
     classifier = Classifier(export_classifier(backbone, head, metadata))
     mesh = TriangleMesh(vertices[0], triangles)
     classify_s = median_seconds(lambda: classifier.classify(mesh, views=options.views), 4 * options.repeats)
