@@ -3,8 +3,9 @@
 Names are loaded when first used, so ``import shapewright`` takes milliseconds.
 """
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from shapewright.lazy_names import lazy_names
 
 if TYPE_CHECKING:
     from shapewright.classification import Classification, Classifier
@@ -64,12 +65,4 @@ __all__ = [
     "train_classifier",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)
