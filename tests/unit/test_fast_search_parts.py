@@ -321,3 +321,23 @@ def test_a_query_that_no_model_follows_is_given_up_in_the_end(model: FittedModel
         assert search.settled is None
         assert search.begun == times
         assert search.finished == {"start", "fit", "polish"}
+
+
+def test_a_later_beginning_without_any_start_changes_nothing(model: FittedModel) -> None:
+    class Exhausted(CountedSearch):
+        def _begin(self) -> list[Candidate]:
+            found = super()._begin()
+            return found if self.begun == 1 else []
+
+    rng = np.random.default_rng(3)
+    target = target_of(TriangleMesh(rng.uniform(-1.0, 1.0, (120, 3)), np.arange(120).reshape(-1, 3)))
+    search = Exhausted(target, [model], [Known()], lambda fraction, message: None)
+    search.run(rng)
+    assert search.begun == APPROACHES
+    assert search.finished == {"start", "fit", "polish"}
+
+
+def test_a_model_without_parameters_has_one_beginning() -> None:
+    rng = np.random.default_rng(3)
+    spikes = TriangleMesh(rng.uniform(-1.0, 1.0, (120, 3)), np.arange(120).reshape(-1, 3))
+    assert searched([FittedModel(rigid())], spikes).begun == 1

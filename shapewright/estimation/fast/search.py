@@ -107,17 +107,19 @@ class Search:
         """Search; ``best`` is filled from the first moment on.
 
         Raises:
+            EstimationError: no instance of the models has an area.
             Cancelled: ``report`` raised it.
         """
         self._message, self._fraction, self._rng = "first orientations", 0.0, rng
         with Pool(self._ask) as pool:
             self._pool = pool
-            candidates: list[Candidate] = []
-            for begun in range(APPROACHES):
-                follows = self.settled is not None or len(self.models) == 1
-                if self._is_solved() or (begun >= APPROACHES_OF_SEVERAL and not follows):
-                    break
+            candidates = self._approached()
+            if not candidates:
+                raise EstimationError("no instance of the models has an area", where="models")
+            begun = 1
+            while not self._is_solved() and begun < self._most_approaches():
                 candidates = _sorted([*candidates, *self._approached()])
+                begun += 1
             if self.settled is None:
                 self._say(0.6, "options")
                 leaders = spread(candidates, BRANCHED, 0, of_one_turn=1)
@@ -140,6 +142,8 @@ class Search:
     def _approached(self) -> list[Candidate]:
         """Go from new random instances to close fits, the nearest first, and settle the nearest ones."""
         candidates = self._begin()
+        if not candidates:
+            return []
         self._say(0.15, "first fits")
         candidates = spread(self._fitted(candidates, _SIFT), SIFTED, SIFTED_OF_EACH)
         candidates = self._fitted(candidates, _FIRST)
@@ -150,6 +154,12 @@ class Search:
         self._say(0.55, "surfaces")
         self._settle(candidates[:SETTLED])
         return candidates
+
+    def _most_approaches(self) -> int:
+        if not any(len(model.compiled.base_values()) for model in self.models):
+            return 1  # there are no other instances
+        follows = self.settled is not None
+        return APPROACHES if follows or len(self.models) == 1 else APPROACHES_OF_SEVERAL
 
     def _is_solved(self) -> bool:
         return self.settled is not None and self.settled.distance < _SURE
@@ -179,11 +189,8 @@ class Search:
             if group:
                 self._keep("start", outline_distance(self.target, group[0]))
         everything = sorted((one for group in groups for one in group), key=lambda one: one.misfit)
-        if not everything:
-            raise EstimationError("no instance of the models has an area", where="models")
-        candidates = spread(everything, STARTS, STARTS_OF_EACH)
         self.finished.add("start")
-        return candidates
+        return spread(everything, STARTS, STARTS_OF_EACH)
 
     def _fitted(self, candidates: Iterable[Candidate], effort: Effort) -> list[Candidate]:
         found = self._pool.map(lambda one: self._fit(one, effort), list(candidates))
