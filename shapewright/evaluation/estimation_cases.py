@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NoReturn, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -41,18 +41,14 @@ class Damage:
 
     def __post_init__(self) -> None:
         if not self.corruption.has_faces:
-            self._refuse()
+            message = f"expected a corruption that leaves a mesh with faces, got {self.corruption.name!r}"
+            raise EvaluationError(message, where="corruption")
 
     def __call__(self, mesh: TriangleMesh, number: int) -> TriangleMesh:
         """Corrupt the mesh of the query with this number."""
         damaged = self.corruption(mesh, self.strength, np.random.default_rng([self.seed, number, 2]))
-        if not isinstance(damaged, TriangleMesh):
-            self._refuse()
+        assert isinstance(damaged, TriangleMesh)  # it has faces
         return damaged
-
-    def _refuse(self) -> NoReturn:
-        message = f"expected a corruption that leaves a mesh with faces, got {self.corruption.name!r}"
-        raise EvaluationError(message, where="corruption")
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,7 @@ def calibrate(
     """Learn without each fold's models and see what becomes of them.
 
     Args:
-        plan: what was drawn.
+        plan: the sources, and how many meshes each one gave.
         data: its features.
         settings: of the training.
         descriptors: panorama descriptors of all meshes, with ``exemplars``.

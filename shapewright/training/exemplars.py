@@ -8,10 +8,10 @@ from shapewright.training.dataset import Plan
 
 
 def exemplars_of(plan: Plan, descriptors: Float[np.ndarray, "A D"], seed: int, subdivision_steps: int) -> Exemplars:
-    """The exemplars of a plan's classes.
+    """Return the exemplars of a plan's classes.
 
     Args:
-        plan: what was drawn.
+        plan: the sources, and how many meshes each one gave.
         descriptors: of all meshes of the plan, see :func:`shapewright.training.dataset.load_descriptors`.
         seed: of the variations.
         subdivision_steps: of the variations.

@@ -330,7 +330,7 @@ def test_closed_surfaces_are_watertight_and_about_a_voxel_outside(shape: str, st
     skin = corrupted(CLOSED, mesh, strength)
     voxel = float(np.ptp(mesh.bounds, axis=0).max()) / strength / diagonal(mesh)
     assert volume(skin) > 0.0
-    assert farthest(mesh, skin, 0.9) < 2.5 * voxel + 0.01  # but for what is inside, as the ends of the stool's legs
+    assert farthest(mesh, skin, 0.9) < 2.5 * voxel + 0.01  # the rest is enclosed, such as the ends of the stool's legs
     sides = np.sort(skin.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     assert (np.unique(sides, axis=0, return_counts=True)[1] % 2 == 0).all()
 

@@ -9,7 +9,7 @@ from shapewright.errors import EvaluationError
 from shapewright.mesh import PointCloud, TriangleMesh
 
 Corrupt = Callable[[TriangleMesh, float, np.random.Generator], TriangleMesh | PointCloud]
-"""Takes a mesh, a strength and a source of all choices; returns what is left of it, in the same coordinates."""
+"""Takes a mesh, a strength and a source of all choices; returns the damaged mesh or points in the same coordinates."""
 
 
 @dataclass(frozen=True)
