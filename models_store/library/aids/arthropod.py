@@ -1,6 +1,5 @@
-"""Modelling aid for insects and spiders: pairs of jointed legs, feelers, and bulbs of bodies."""
+"""Modelling aid for insects and spiders: pairs of jointed legs and feelers."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -55,19 +54,6 @@ class Station:
 
     anchors: tuple[Target, Target]
     heading_deg: float
-
-
-def bulb(
-    length: float, width: float, height: float, *, start: float, count: int = 6, peak: float = 1.0
-) -> list[Section]:
-    """Return the sections of a rounded body; a ``peak`` above 1 moves the widest place towards the start."""
-    angles = [math.radians(18.0 + 144.0 * i / (count - 1)) for i in range(count)]
-    lowest, highest = 1 - math.cos(angles[0]), 1 - math.cos(angles[-1])
-    shares = [(1 - math.cos(angle) - lowest) / (highest - lowest) for angle in angles]
-    return [
-        Section(start + length * share**peak, width * math.sin(angle), height * math.sin(angle))
-        for share, angle in zip(shares, angles, strict=True)
-    ]
 
 
 def flanks(recorder: Recorder, body: Loft, number: int, *, down: float = 0.0) -> tuple[Target, Target]:

@@ -5,8 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from models_store.library.aids.airframe import Fin, Tailplane, fin, tailplane, whole
-from models_store.library.aids.arthropod import bulb
 from models_store.library.aids.beam import beam, upper
+from models_store.library.aids.bulb import bulb
 from models_store.library.aids.loft import Loft, Section, loft, move
 from models_store.library.aids.rotors import Mast, Rotor, main_rotor, tail_rotor
 from models_store.library.aids.undercarriage import Gear, undercarriage

@@ -2,19 +2,8 @@
 
 from pathlib import Path
 
-from models_store.library.aids.arthropod import (
-    Feelers,
-    LegShape,
-    Station,
-    bulb,
-    face,
-    flanks,
-    hub,
-    legs,
-    lift,
-    resize,
-    tilt,
-)
+from models_store.library.aids.arthropod import Feelers, LegShape, Station, face, flanks, hub, legs, lift, resize, tilt
+from models_store.library.aids.bulb import bulb
 from models_store.library.aids.loft import Loft, Section, loft
 from models_store.library.author import publish
 from shapewright.modeling import ProceduralModel, Recorder

@@ -6,7 +6,6 @@ from models_store.library.aids.arthropod import (
     Feelers,
     LegShape,
     Station,
-    bulb,
     components,
     face,
     feelers,
@@ -17,6 +16,7 @@ from models_store.library.aids.arthropod import (
     resize,
     tilt,
 )
+from models_store.library.aids.bulb import bulb
 from models_store.library.aids.loft import Loft, Section, loft
 from models_store.library.author import publish
 from shapewright.modeling import ProceduralModel, Recorder, when

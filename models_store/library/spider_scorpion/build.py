@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from models_store.library.aids.arthropod import LegShape, Station, bulb, flanks, legs, resize
+from models_store.library.aids.arthropod import LegShape, Station, flanks, legs, resize
 from models_store.library.aids.beam import beam
+from models_store.library.aids.bulb import bulb
 from models_store.library.aids.loft import Loft, Section, loft
 from models_store.library.author import publish
 from shapewright.modeling import Mirror, ProceduralModel, Recorder, Target

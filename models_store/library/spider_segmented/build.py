@@ -3,19 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from models_store.library.aids.arthropod import (
-    Feelers,
-    LegShape,
-    Station,
-    bulb,
-    face,
-    flanks,
-    hub,
-    legs,
-    lift,
-    resize,
-    tilt,
-)
+from models_store.library.aids.arthropod import Feelers, LegShape, Station, face, flanks, hub, legs, lift, resize, tilt
+from models_store.library.aids.bulb import bulb
 from models_store.library.aids.loft import Loft, Section, loft
 from models_store.library.author import publish
 from shapewright.modeling import Element, ProceduralModel, Recorder, Target
