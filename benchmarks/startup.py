@@ -70,7 +70,7 @@ def milliseconds(work: Callable[[int], object], repeats: int) -> dict[str, float
 def documents() -> dict[str, str]:
     """The shipped models; a box with a neck where none are shipped."""
     library = Path(__file__).parents[1] / "models_store" / "library"
-    shipped = {path.parent.name: path.read_text() for path in sorted(library.glob("*/model.json"))}
+    shipped = {path.parent.name: path.read_text() for path in sorted(library.glob("*/*/model.json"))}
     if shipped:
         return shipped
     from shapewright.modeling import Recorder

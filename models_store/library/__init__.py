@@ -1,1 +1,1 @@
-"""The procedural models that ship: one folder a model with its document, the script that models it, a thumbnail."""
+"""The procedural models that ship: a folder a class, in it a folder a model: its script, document and thumbnail."""

@@ -1,6 +1,8 @@
-"""Finds the procedural models that ship. Reads package files only; loading a document imports the modelling kernel."""
+"""The procedural models that ship, each in the folder ``<class>/<name>``.
 
-import json
+Names and classes come from the folders alone; only loading a document imports the modelling kernel.
+"""
+
 from importlib import resources
 from importlib.resources.abc import Traversable
 from typing import TYPE_CHECKING
@@ -17,25 +19,21 @@ THUMBNAIL = "thumbnail.png"
 
 def list_shipped() -> dict[str, Traversable]:
     """Return the documents of the shipped models, by name, sorted by name."""
-    found = {folder.name: folder / DOCUMENT for folder in _folder().iterdir() if folder.is_dir()}
-    return {name: document for name, document in sorted(found.items()) if document.is_file()}
+    return {name: folder / DOCUMENT for name, (_, folder) in _model_folders().items()}
 
 
 def list_classes() -> dict[str, list[str]]:
-    """Return the names of the shipped models of each class, sorted; their documents are read, not checked."""
+    """Return the names of the shipped models of each class, sorted."""
     by_class: dict[str, list[str]] = {}
-    for name, document in list_shipped().items():
-        by_class.setdefault(str(json.loads(document.read_bytes())["class"]), []).append(name)
+    for name, (class_name, _) in _model_folders().items():
+        by_class.setdefault(class_name, []).append(name)
     return by_class
 
 
 def list_further_classes() -> list[str]:
     """Return the classes of the paper's eight further objects: those whose models have annotations."""
-    return [
-        class_name
-        for class_name, names in list_classes().items()
-        if any((_folder() / name / ANNOTATIONS).is_file() for name in names)
-    ]
+    annotated = [class_name for class_name, folder in _model_folders().values() if (folder / ANNOTATIONS).is_file()]
+    return list(dict.fromkeys(annotated))
 
 
 def load_shipped(name: str) -> "ProceduralModel":
@@ -46,7 +44,7 @@ def load_shipped(name: str) -> "ProceduralModel":
     """
     from shapewright.modeling import ProceduralModel
 
-    return ProceduralModel.from_json(_checked(name).read_bytes())
+    return ProceduralModel.from_json((_checked(name) / DOCUMENT).read_bytes())
 
 
 def thumbnail_png(name: str) -> bytes:
@@ -55,17 +53,25 @@ def thumbnail_png(name: str) -> bytes:
     Raises:
         ModelError: no model of this name ships.
     """
-    _checked(name)
-    return (_folder() / name / THUMBNAIL).read_bytes()
+    return (_checked(name) / THUMBNAIL).read_bytes()
 
 
-def _folder() -> Traversable:
-    return resources.files("models_store.library")
+def _model_folders() -> dict[str, tuple[str, Traversable]]:
+    """Return the class and the folder of each shipped model, by name, sorted by name."""
+    classes = [entry for entry in resources.files("models_store.library").iterdir() if entry.is_dir()]
+    found = {
+        folder.name: (entry.name, folder)
+        for entry in classes
+        for folder in entry.iterdir()
+        if (folder / DOCUMENT).is_file()
+    }
+    return dict(sorted(found.items()))
 
 
 def _checked(name: str) -> Traversable:
-    shipped = list_shipped()
-    if name not in shipped:
-        names = ", ".join(shipped) or "none"
+    """Return the folder of a shipped model."""
+    folders = _model_folders()
+    if name not in folders:
+        names = ", ".join(folders) or "none"
         raise ModelError(f"no such model ships (these do: {names})", where=repr(name))
-    return shipped[name]
+    return folders[name][1]

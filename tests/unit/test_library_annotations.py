@@ -21,14 +21,14 @@ from models_store.library.shipped import load_shipped
 from shapewright.errors import ModelError
 from shapewright.modeling import ProceduralModel
 
-FOLDER = Path(models_store.library.__file__).parent
-NAMES = sorted(path.parent.name for path in FOLDER.glob(f"*/{ANNOTATIONS}"))
+PATHS = {path.parent.name: path for path in Path(models_store.library.__file__).parent.glob(f"*/*/{ANNOTATIONS}")}
+NAMES = sorted(PATHS)
 
 every_object = pytest.mark.parametrize("name", NAMES)
 
 
 def read(name: str) -> Annotation:
-    return Annotation.from_json((FOLDER / name / ANNOTATIONS).read_bytes())
+    return Annotation.from_json(PATHS[name].read_bytes())
 
 
 def test_the_objects_of_table_2_are_annotated() -> None:
@@ -42,7 +42,7 @@ def test_an_annotation_is_about_every_variation_of_its_model(name: str) -> None:
 
 @every_object
 def test_the_script_says_the_same(name: str) -> None:
-    script = importlib.import_module(f"models_store.library.{name}.build")
+    script = importlib.import_module(f"models_store.library.{load_shipped(name).class_name}.{name}.build")
     shipped = read(name)
     assert script.model().annotation() == shipped
     assert Annotation.from_json(shipped.to_json()) == shipped

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 import models_store.library
-from models_store.library.shipped import list_shipped, load_shipped, thumbnail_png
+from models_store.library.shipped import list_classes, list_shipped, load_shipped, thumbnail_png
 from shapewright.errors import ModelError
 from shapewright.modeling import CompiledModel, ProceduralModel, compile_model
 from shapewright.modeling.validation import validate_model
@@ -64,6 +64,15 @@ def test_every_class_has_a_model_that_bears_its_name() -> None:
         assert name == class_name or name.startswith(f"{class_name}_"), name
 
 
+def test_a_model_lies_in_the_folder_of_its_class() -> None:
+    by_class = {
+        class_name: [name for name in NAMES if model_of(name).class_name == class_name] for class_name in CLASSES
+    }
+    assert list_classes() == by_class
+    folders = Path(models_store.library.__file__).parent.glob("*/*/model.json")
+    assert sorted(path.parent.name for path in folders) == NAMES, "no name ships twice"
+
+
 def test_a_name_that_does_not_ship_is_refused() -> None:
     with pytest.raises(ModelError, match="glass_with_stem"):
         load_shipped("../glass_with_stem")
@@ -73,9 +82,9 @@ def test_a_name_that_does_not_ship_is_refused() -> None:
 
 @every_model
 def test_the_document_is_what_its_script_models(name: str) -> None:
-    script = importlib.import_module(f"models_store.library.{name}.build")
-    text = Path(models_store.library.__file__).parent.joinpath(name, "model.json").read_text(encoding="utf-8")
-    assert script.build().to_json() == text, f"run: python -m models_store.library.{name}.build"
+    module = f"models_store.library.{model_of(name).class_name}.{name}.build"
+    script = importlib.import_module(module)
+    assert script.build().to_json() == list_shipped()[name].read_text(encoding="utf-8"), f"run: python -m {module}"
 
 
 @every_model

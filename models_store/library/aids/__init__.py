@@ -1,4 +1,4 @@
-"""What scripts of several models share: round parts, bodies of cross-sections, boards, rods, and parts of a class.
+"""Modelling aids that models of several classes use: round parts, bodies of cross-sections, boards, fins.
 
 Everything here only calls the recorder; a document knows nothing of it.
 """

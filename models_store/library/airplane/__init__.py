@@ -1,1 +1,1 @@
-"""The procedural model ``airplane``: see build.py."""
+"""The procedural models of the class ``airplane``."""

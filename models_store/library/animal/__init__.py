@@ -1,1 +1,1 @@
-"""The procedural model ``animal``: see build.py."""
+"""The procedural models of the class ``animal``."""

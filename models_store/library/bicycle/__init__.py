@@ -1,1 +1,1 @@
-"""The procedural model ``bicycle``: see build.py."""
+"""The procedural models of the class ``bicycle``, and the modelling aids that only they use."""

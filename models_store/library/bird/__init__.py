@@ -1,1 +1,1 @@
-"""The procedural model ``bird``: see build.py."""
+"""The procedural models of the class ``bird``, and the modelling aids that only they use."""

@@ -1,1 +1,1 @@
-"""The procedural model ``chair``: see build.py."""
+"""The procedural models of the class ``chair``."""

@@ -1,1 +1,1 @@
-"""The procedural model ``fish``: see build.py."""
+"""The procedural models of the class ``fish``, and the modelling aids that only they use."""

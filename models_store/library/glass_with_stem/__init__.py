@@ -1,1 +1,1 @@
-"""The procedural model ``glass_with_stem``: see build.py."""
+"""The procedural models of the class ``glass_with_stem``, and the modelling aids that only they use."""

@@ -1,1 +1,1 @@
-"""The procedural model ``gun``: see build.py."""
+"""The procedural models of the class ``gun``, and the modelling aids that only they use."""

@@ -1,1 +1,1 @@
-"""The procedural model ``helicopter``: see build.py."""
+"""The procedural models of the class ``helicopter``, and the modelling aids that only they use."""

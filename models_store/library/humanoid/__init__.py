@@ -1,1 +1,1 @@
-"""The procedural model ``humanoid``: see build.py."""
+"""The procedural models of the class ``humanoid``."""

@@ -1,1 +1,1 @@
-"""The procedural model ``office_chair``: see build.py."""
+"""The procedural models of the class ``office_chair``, and the modelling aids that only they use."""

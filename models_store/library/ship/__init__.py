@@ -1,1 +1,1 @@
-"""The procedural model ``ship``: see build.py."""
+"""The procedural models of the class ``ship``."""

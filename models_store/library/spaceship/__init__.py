@@ -1,1 +1,1 @@
-"""The procedural model ``spaceship``: see build.py."""
+"""The procedural models of the class ``spaceship``."""

@@ -1,1 +1,1 @@
-"""The procedural model ``spider``: see build.py."""
+"""The procedural models of the class ``spider``, and the modelling aids that only they use."""

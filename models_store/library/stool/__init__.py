@@ -1,1 +1,1 @@
-"""The procedural model ``stool``: see build.py."""
+"""The procedural models of the class ``stool``."""

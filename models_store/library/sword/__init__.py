@@ -1,1 +1,1 @@
-"""The procedural model ``sword``: see build.py."""
+"""The procedural models of the class ``sword``, and the modelling aids that only they use."""

@@ -1,1 +1,1 @@
-"""The procedural model ``table``: see build.py."""
+"""The procedural models of the class ``table``."""

@@ -1,1 +1,1 @@
-"""The procedural model ``tower``: see build.py."""
+"""The procedural models of the class ``tower``."""

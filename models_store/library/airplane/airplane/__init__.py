@@ -1,0 +1,1 @@
+"""The procedural model ``airplane``: see build.py."""

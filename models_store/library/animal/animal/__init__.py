@@ -1,0 +1,1 @@
+"""The procedural model ``animal``: see build.py."""

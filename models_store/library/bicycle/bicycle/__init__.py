@@ -1,0 +1,1 @@
+"""The procedural model ``bicycle``: see build.py."""

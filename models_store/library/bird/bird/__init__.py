@@ -1,0 +1,1 @@
+"""The procedural model ``bird``: see build.py."""

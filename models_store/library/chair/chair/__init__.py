@@ -1,0 +1,1 @@
+"""The procedural model ``chair``: see build.py."""

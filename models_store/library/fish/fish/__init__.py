@@ -1,0 +1,1 @@
+"""The procedural model ``fish``: see build.py."""

@@ -1,0 +1,1 @@
+"""The procedural model ``glass_with_stem``: see build.py."""

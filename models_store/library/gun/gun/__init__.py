@@ -1,0 +1,1 @@
+"""The procedural model ``gun``: see build.py."""

@@ -1,0 +1,1 @@
+"""The procedural model ``helicopter``: see build.py."""

@@ -1,0 +1,1 @@
+"""The procedural model ``humanoid``: see build.py."""

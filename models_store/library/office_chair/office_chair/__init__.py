@@ -1,0 +1,1 @@
+"""The procedural model ``office_chair``: see build.py."""

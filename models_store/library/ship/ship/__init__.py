@@ -1,0 +1,1 @@
+"""The procedural model ``ship``: see build.py."""

@@ -1,0 +1,1 @@
+"""The procedural model ``spaceship``: see build.py."""

@@ -1,0 +1,1 @@
+"""The procedural model ``spider``: see build.py."""

@@ -1,0 +1,1 @@
+"""The procedural model ``stool``: see build.py."""

@@ -1,0 +1,1 @@
+"""The procedural model ``sword``: see build.py."""

@@ -1,0 +1,1 @@
+"""The procedural model ``table``: see build.py."""

@@ -1,0 +1,1 @@
+"""The procedural model ``tower``: see build.py."""
