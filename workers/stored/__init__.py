@@ -1,1 +1,1 @@
-"""What workers keep as artefacts and find again: banks, classifiers, indexes, arrays."""
+"""What workers keep as artefacts and find again: banks, classifiers with their models, indexes, arrays."""

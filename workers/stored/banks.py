@@ -1,7 +1,5 @@
 """The panorama bank of a model is the same for every query, so it is built once and kept as an artefact."""
 
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import structlog
@@ -10,6 +8,7 @@ from models_store.errors import ArtifactError, ArtifactNotFoundError
 from shapewright.errors import EstimationError
 from shapewright.progress import Progress
 from workers.context import JobContext
+from workers.stored.saving import saved_bytes
 
 if TYPE_CHECKING:
     from shapewright.estimation import EstimationSettings, PanoramaBank
@@ -74,9 +73,6 @@ def bank_key(compiled: "InstanceGenerator", settings: "EstimationSettings") -> s
 
 def _keep(context: JobContext, key: str, bank: "PanoramaBank") -> None:
     try:
-        with tempfile.TemporaryDirectory(prefix="shapewright-bank-") as folder:
-            path = Path(folder) / "bank.npz"
-            bank.save(path)
-            context.artifacts.put(key, path.read_bytes())
+        context.artifacts.put(key, saved_bytes(bank.save))
     except (ArtifactError, OSError) as error:  # the estimation itself needs no room
         log.warning("bank could not be kept", key=key, error=str(error))

@@ -1,15 +1,15 @@
-"""Classifiers out of the store."""
+"""Classifiers as artefacts: one ONNX file each, and exemplars beside it."""
 
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from models_store import catalog
 from workers.context import JobContext
+from workers.stored.saving import saved_bytes
 
 if TYPE_CHECKING:
     from shapewright.classification import Classifier
-    from shapewright.modeling import CompiledModel
+    from shapewright.training import TrainedClassifier
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,6 +18,19 @@ class LoadedClassifier:
 
     classifier: "Classifier"
     digest: str
+
+
+@dataclass(frozen=True)
+class ClassifierKeys:
+    """Where the files of a classifier are stored; ``exemplars`` is ``None`` if it has none."""
+
+    onnx: str
+    exemplars: str | None
+
+    @property
+    def all(self) -> tuple[str, ...]:
+        """The keys that there are."""
+        return (self.onnx,) if self.exemplars is None else (self.onnx, self.exemplars)
 
 
 _kept: Final[dict[str, LoadedClassifier]] = {}
@@ -47,37 +60,16 @@ def stored_classifier(context: JobContext, classifier_id: str) -> LoadedClassifi
     return _kept[key]
 
 
-_compiled: "Final[dict[str, CompiledModel]]" = {}
-"""Models that were fitted last, by their ids."""
-_MOST_COMPILED: Final = 16
+def store_classifier(context: JobContext, classifier_id: str, trained: "TrainedClassifier") -> ClassifierKeys:
+    """Write the files of a classifier that was trained now.
 
-
-class StoredModels(Mapping[str, "CompiledModel"]):
-    """The models that a classifier learned from by their digests, which are their ids; compiled when asked for.
-
-    Args:
-        context: of the job.
-        classifier_id: of the classifier.
+    Raises:
+        ArtifactError: there is no room for them.
     """
-
-    def __init__(self, context: JobContext, classifier_id: str) -> None:
-        self._context = context
-        with context.database.reading() as session:
-            self._ids = tuple(catalog.get_classifier(session, classifier_id).model_ids)
-
-    def __getitem__(self, model_id: str) -> "CompiledModel":
-        if model_id not in self._ids:
-            raise KeyError(model_id)
-        if model_id not in _compiled:
-            from shapewright.modeling import compile_model
-
-            while len(_compiled) >= _MOST_COMPILED:
-                del _compiled[next(iter(_compiled))]
-            _compiled[model_id] = compile_model(self._context.load_model(model_id))
-        return _compiled[model_id]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._ids)
-
-    def __len__(self) -> int:
-        return len(self._ids)
+    exemplars_key = None
+    if trained.exemplars is not None:
+        exemplars_key = context.own_key(f"classifiers/{classifier_id}", "npz")
+        context.artifacts.put(exemplars_key, saved_bytes(trained.exemplars.save))
+    onnx_key = context.own_key(f"classifiers/{classifier_id}", "onnx")
+    context.artifacts.put(onnx_key, trained.onnx)
+    return ClassifierKeys(onnx_key, exemplars_key)

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from workers.context import JobContext
+from workers.stored.saving import saved_bytes
 
 if TYPE_CHECKING:
     from shapewright.retrieval import CollectionIndex
@@ -43,7 +44,4 @@ def store_index(context: JobContext, key: str, index: "CollectionIndex") -> None
     Raises:
         ArtifactError: there is no room for it.
     """
-    with tempfile.TemporaryDirectory(prefix="shapewright-index-") as folder:
-        path = Path(folder) / "index.npz"
-        index.save(path)
-        context.artifacts.put(key, path.read_bytes())
+    context.artifacts.put(key, saved_bytes(index.save))

@@ -11,7 +11,8 @@ from models_store import catalog
 from models_store.errors import ArtifactError
 from workers.context import JobContext, Outcome
 from workers.finite import finite
-from workers.stored.classifiers import StoredModels, stored_classifier
+from workers.stored.classifiers import stored_classifier
+from workers.stored.models import StoredModels
 
 log = structlog.get_logger(__name__)
 

@@ -1,9 +1,6 @@
 """Train a classifier on procedural models and keep it: one ONNX file, and exemplars beside it."""
 
-import tempfile
 from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 from models_store import catalog
 from models_store.job_kinds import JobKind
@@ -13,9 +10,7 @@ from workers.finite import finite
 from workers.learning_plans import LearningPlan, learning_plan
 from workers.shared_parts import SharedParts
 from workers.stored.arrays import ArtifactArrays
-
-if TYPE_CHECKING:
-    from shapewright.classification.exemplars import Exemplars
+from workers.stored.classifiers import store_classifier
 
 
 def train_classifier(context: JobContext) -> Outcome:
@@ -27,24 +22,17 @@ def train_classifier(context: JobContext) -> Outcome:
     store = ArtifactArrays.of(context)
     _draw_and_describe(context, work, store, PartialProgress(context.progress, 0.0, IMAGES_SHARE))
     trained = learn(work.plan, work.settings, store, PartialProgress(context.progress, IMAGES_SHARE, 1.0))
-    onnx_key = context.own_key(f"classifiers/{classifier_id}", "onnx")
-    keys = [onnx_key]
-    exemplars_key = None
-    if trained.exemplars is not None:
-        exemplars_key = context.own_key(f"classifiers/{classifier_id}", "npz")
-        keys.append(exemplars_key)
-        context.artifacts.put(exemplars_key, _file_content(trained.exemplars))
-    context.artifacts.put(onnx_key, trained.onnx)
+    keys = store_classifier(context, classifier_id, trained)
     record = partial(
         catalog.record_classifier,
         identifier=classifier_id,
-        onnx_key=onnx_key,
-        exemplars_key=exemplars_key,
+        onnx_key=keys.onnx,
+        exemplars_key=keys.exemplars,
         class_names=list(trained.class_names),
         metrics=finite(dict(trained.metrics)),
         seconds=context.seconds,
     )
-    return Outcome(record, tuple(keys))
+    return Outcome(record, keys.all)
 
 
 def _draw_and_describe(context: JobContext, work: LearningPlan, store: ArtifactArrays, progress: Progress) -> None:
@@ -70,10 +58,3 @@ def _draw_and_describe(context: JobContext, work: LearningPlan, store: ArtifactA
         compute(numbers[index], PartialProgress(progress, done, done + 1 / len(numbers)))
     for number in missing():  # what failed at another worker, where this one says why if it fails again
         compute(number, PartialProgress(progress, 1.0, 1.0))
-
-
-def _file_content(exemplars: "Exemplars") -> bytes:
-    with tempfile.TemporaryDirectory(prefix="shapewright-exemplars-") as folder:
-        path = Path(folder) / "exemplars.npz"
-        exemplars.save(path)
-        return path.read_bytes()
