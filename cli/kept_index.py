@@ -81,9 +81,9 @@ def index_files(
 
 
 def _cached(classifier_digest: str) -> Path:
-    from shapewright.evaluation.descriptor_cache import fingerprint
+    from shapewright.distances.descriptor_files import descriptor_version
 
-    return cache_folder(None, "retrieval") / f"index-{classifier_digest[:24]}-{fingerprint()}.npz"
+    return cache_folder(None, "retrieval") / f"index-{classifier_digest[:24]}-d{descriptor_version()}.npz"
 
 
 def _kept(path: Path, classifier: "MeshClassifier", classifier_digest: str, *, strict: bool) -> "CollectionIndex":

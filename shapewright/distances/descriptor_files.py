@@ -1,7 +1,9 @@
-"""Files of panorama descriptors: banks, exemplars, indexes. What each says about itself, and whether it still fits.
+"""The version of stored panorama descriptors, and the check that refuses what another version wrote.
 
-Descriptors of two versions have the same size and mean different things, so every file names its version, and one check
-refuses what another version wrote.
+Descriptors of two versions have the same size and mean different things. A file that people keep (a bank, exemplars, an
+index) names the version in its header, and :func:`read_descriptor_header` refuses another one. A cache names it in its
+keys, by :func:`descriptor_version`, so it finds nothing of another version and computes it again. No other module looks
+at the version.
 """
 
 from collections.abc import Mapping
@@ -19,6 +21,11 @@ class OutdatedFileError(ValueError):
     """A file that was written by another version of the format or of the descriptor."""
 
 
+def descriptor_version() -> int:
+    """Return the version of the descriptors that this library computes, for keys of what depends on them."""
+    return VERSION
+
+
 def descriptor_header(file_format: str, version: int, rest: Mapping[str, Any]) -> dict[str, Any]:
     """Make the header of a file that holds descriptors.
 
@@ -27,7 +34,7 @@ def descriptor_header(file_format: str, version: int, rest: Mapping[str, Any]) -
         version: of the format.
         rest: what else the file says about itself.
     """
-    return {"format": file_format, "version": version, "descriptor_version": VERSION, **rest}
+    return {"format": file_format, "version": version, "descriptor_version": descriptor_version(), **rest}
 
 
 def read_descriptor_header(path: str | Path, file_format: str, version: int) -> dict[str, Any]:
@@ -45,9 +52,9 @@ def read_descriptor_header(path: str | Path, file_format: str, version: int) -> 
         raise OutdatedFileError(
             f"the file is of version {header.get('version')!r} of its format, this library reads {version}"
         )
-    found = header.get("descriptor_version", FIRST_VERSION)
-    if found != VERSION:
+    found, expected = header.get("descriptor_version", FIRST_VERSION), descriptor_version()
+    if found != expected:
         raise OutdatedFileError(
-            f"the file was made by another version of the descriptor ({found!r}, not {VERSION}); make it anew"
+            f"the file was made by another version of the descriptor ({found!r}, not {expected}); make it anew"
         )
     return header

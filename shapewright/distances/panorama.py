@@ -38,7 +38,10 @@ from jaxtyping import Float, Float32, Int
 from shapewright.errors import MeshError
 
 VERSION = 1
-"""Raise it with every change of the numbers: what was stored under the old ones is then left alone."""
+"""Raise it with every change of a descriptor's numbers or of their distance; a test compares both with known numbers.
+
+What was stored under another version is then refused or computed again (``distances/descriptor_files.py``).
+"""
 AXIS_WEIGHTS = (0.51, 0.31, 0.18)
 """Weights of the first, second and third principal axis."""
 RADIUS_FACTOR = 3.0

@@ -1,24 +1,19 @@
 """What a coverage run can use again: banks of variations, descriptors of meshes, nearest rows.
 
-Everything is kept in one folder and found by content: the digest of a model, the SHA-256 of a mesh file, and a
-fingerprint of the descriptor and the distance themselves, so that a change of their code finds nothing old.
+Everything is kept in one folder and found by content: the digest of a model, the SHA-256 of a mesh file, and the
+version of the descriptor.
 """
 
 import hashlib
 import json
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
-from shapewright.distances.panorama import (
-    PanoramaDescriptor,
-    panorama_descriptor,
-    panorama_descriptors,
-    panorama_distance,
-)
+from shapewright.distances.descriptor_files import descriptor_version
+from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptors
 from shapewright.errors import EstimationError, MeshError
 from shapewright.estimation.bank import PanoramaBank, build_bank
 from shapewright.modeling import CompiledModel
@@ -40,7 +35,7 @@ class BankRequest:
     def stem(self) -> str:
         """Name of the files that belong to it."""
         model = self.compiled.model
-        return f"{model.name}-{self.samples}-{self.seed}-{model.digest[:24]}-{fingerprint()}"
+        return f"{model.name}-{self.samples}-{self.seed}-{model.digest[:24]}-d{descriptor_version()}"
 
     @property
     def family(self) -> str:
@@ -99,7 +94,7 @@ class DescriptorCache:
         write_whole(self._folder / f"{request.stem}.json", json.dumps(table).encode())
 
     def _mesh_path(self, digest: str) -> Path:
-        return self._folder / f"mesh-{digest}-{fingerprint()}.f4"
+        return self._folder / f"mesh-{digest}-d{descriptor_version()}.f4"
 
 
 def file_digest(path: Path) -> str:
@@ -110,17 +105,6 @@ def file_digest(path: Path) -> str:
     """
     with path.open("rb") as file:
         return hashlib.sha256(hashlib.file_digest(file, "sha256").digest() + path.suffix.lower().encode()).hexdigest()
-
-
-@cache
-def fingerprint() -> str:
-    """Hash of a descriptor and a distance of fixed shapes: another code of either gives another one."""
-    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.3, 1.4, 0.2], [0.2, 0.5, 2.1]])
-    faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
-    first = panorama_descriptor(corners, faces)
-    second = panorama_descriptor(corners**2 + corners, faces)
-    distance = np.array([panorama_distance(first, second)])
-    return hashlib.sha256(first.to_array().tobytes() + distance.tobytes()).hexdigest()[:12]
 
 
 def _load_bank(path: Path, request: BankRequest) -> PanoramaBank | None:

@@ -84,9 +84,9 @@ def features_key(chunk: Chunk, settings: TrainingSettings, backbone: Backbone) -
 
 def descriptors_key(chunk: Chunk, settings: TrainingSettings) -> str:
     """Where the panorama descriptors of a chunk's meshes are stored."""
-    from shapewright.distances.panorama import VERSION
+    from shapewright.distances.descriptor_files import descriptor_version
 
-    return f"panoramas/v{VERSION}-steps{settings.subdivision_steps}/{_series_name(chunk, settings)}"
+    return f"panoramas/v{descriptor_version()}-steps{settings.subdivision_steps}/{_series_name(chunk, settings)}"
 
 
 _PICTURE_SETTINGS: Final = (

@@ -9,7 +9,7 @@ LEARNING_VERSION: Final = 2
 def learning_versions() -> list[int]:
     """What a classifier that is kept has to have been made by, to be worth keeping."""
     from shapewright.classification.file_format import FORMAT_VERSION
-    from shapewright.distances import panorama
+    from shapewright.distances.descriptor_files import descriptor_version
     from shapewright.training import negatives
     from shapewright.training.chunks import PICTURES_VERSION
     from shapewright.training.sources import MESHES_VERSION
@@ -21,5 +21,5 @@ def learning_versions() -> list[int]:
         MESHES_VERSION,
         negatives.VERSION,
         negatives.MIXED_VERSION,
-        panorama.VERSION,
+        descriptor_version(),
     ]

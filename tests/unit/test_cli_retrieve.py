@@ -105,6 +105,22 @@ def test_a_second_query_looks_at_new_meshes_only(folder: Path, tmp_path: Path) -
     assert ASKED.asked == 10
 
 
+def test_an_index_of_another_descriptor_is_refused_where_it_is_named_and_made_anew_in_the_cache(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    query, kept = ("--class", "rod", "--evidence", "probabilities", "--json"), tmp_path / "index.npz"
+    retrieve(*query, "--index", kept)
+    retrieve(*query)
+    monkeypatch.setattr("shapewright.distances.descriptor_files.VERSION", 99)
+    assert (
+        f"--index {kept}: the file was made by another version of the descriptor"
+        in retrieve(*query, "--index", kept).refused()
+    )
+    ASKED.asked = 0
+    assert len(files(retrieve(*query))) == 5
+    assert ASKED.asked == 5
+
+
 def test_a_table_and_a_sheet_for_people(tmp_path: Path) -> None:
     sheet = tmp_path / "pictures" / "sheet.png"
     outcome = retrieve("--model", "rod.json", "--instances", "3", "--limit", "3", "--contact-sheet", sheet)

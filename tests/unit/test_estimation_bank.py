@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from ell_generator import EllGenerator
 
+from shapewright.distances.descriptor_files import FIRST_VERSION
 from shapewright.distances.panorama import DESCRIPTOR_SIZE, panorama_descriptor
 from shapewright.errors import Cancelled, EstimationError
 from shapewright.estimation import PanoramaBank, build_bank
@@ -127,6 +128,17 @@ def test_a_bank_of_another_version_is_refused(bank: PanoramaBank, tmp_path: Path
     write_arrays(path, {**header, field: header[field] + 1}, arrays)
     with pytest.raises(EstimationError, match=message):
         PanoramaBank.load(path)
+
+
+def test_a_bank_that_names_no_descriptor_is_of_the_first(
+    bank: PanoramaBank, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "bank.npz"
+    bank.save(path)
+    header = read_header(path)
     del header["descriptor_version"]  # as files had it before
-    write_arrays(path, header, arrays)
+    write_arrays(path, header, {"values": bank.values, "descriptors": bank.descriptors})
     assert len(PanoramaBank.load(path)) == len(bank)
+    monkeypatch.setattr("shapewright.distances.descriptor_files.VERSION", FIRST_VERSION + 1)
+    with pytest.raises(EstimationError, match="make it anew"):
+        PanoramaBank.load(path)

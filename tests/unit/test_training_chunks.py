@@ -80,6 +80,16 @@ def test_chunks_cut_a_source_without_a_rest(count: int) -> None:
     assert all(chunk.count == SERIES for chunk in chunks[:-1])
 
 
+def test_descriptors_of_another_version_are_computed_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    chunk, backbone, store = Chunk(SOURCES[0], 0, 3), load_backbone(), MemoryStore()
+    for key in (features_key(chunk, SMALL, backbone), descriptors_key(chunk, SMALL)):
+        store.put(key, np.zeros(1))
+    assert is_stored(chunk, SMALL, backbone, store, described=True)
+    monkeypatch.setattr("shapewright.distances.descriptor_files.VERSION", 99)
+    assert is_stored(chunk, SMALL, backbone, store, described=False)
+    assert not is_stored(chunk, SMALL, backbone, store, described=True)
+
+
 def test_a_name_says_all_that_the_features_depend_on() -> None:
     chunk, backbone = Chunk(SOURCES[0], 0, 3), load_backbone()
     keys = [features_key(chunk, SMALL, backbone)]

@@ -63,10 +63,10 @@ def new_bank(
 
 def bank_key(compiled: "InstanceGenerator", settings: "EstimationSettings") -> str:
     """The artefact key of a bank: everything that its content depends on."""
-    from shapewright.distances.panorama import VERSION as DESCRIPTOR_VERSION
+    from shapewright.distances.descriptor_files import descriptor_version
     from shapewright.estimation.bank import VERSION
 
-    versions = f"v{VERSION}-d{DESCRIPTOR_VERSION}"
+    versions = f"v{VERSION}-d{descriptor_version()}"
     name = f"samples{settings.samples}-seed{settings.seed}-steps{settings.subdivision_steps}-{versions}.npz"
     return f"banks/{compiled.model.digest}/{name}"
 
