@@ -19,7 +19,7 @@ from cli.evaluation_options import (
     Limit,
     ReportFile,
     Seed,
-    names_in,
+    chosen_meshes,
     threads,
 )
 from cli.learning import kept_classifier
@@ -256,17 +256,14 @@ def _evaluated(options: Options, report: Path | None) -> Iterator[tuple[Evaluate
     """Judge the dataset with the classifier and the baselines; the progress is what is left for a report."""
     from shapewright.classification import load_classifier
     from shapewright.evaluation.classified import judge_dataset
-    from shapewright.evaluation.datasets import of_classes, read_dataset, spread
+    from shapewright.evaluation.datasets import read_dataset
     from shapewright.training import TrainingSettings
 
     started_s = time.monotonic()
     if report is not None and report.is_dir():
         raise EvaluationError("a file is needed, this is a folder", where=f"--report {report}")
     items = read_dataset(options.dataset)
-    wanted = names_in(options.classes)
-    chosen = spread(items if wanted is None else of_classes(items, wanted), options.limit)
-    if not chosen:
-        raise EvaluationError("no mesh of the dataset has one of these classes", where="--classes")
+    chosen = chosen_meshes(items, options.classes, options.limit)
     settings = _settings(options)
     with threads(options.jobs) as used, shown_progress("evaluating") as progress:
         training = PartialProgress(progress, 0.0, _TRAINING_SHARE)
@@ -276,7 +273,7 @@ def _evaluated(options: Options, report: Path | None) -> Iterator[tuple[Evaluate
             learned = _shipped(network.class_names)
             settings = settings or TrainingSettings.from_dict(network.metadata["settings"])
         else:
-            learned = _classes_of({item.class_name for item in items})
+            learned = shipped_classes_of({item.class_name for item in items})
             settings = settings or TrainingSettings(seed=options.seed)
             network = kept_classifier(learned, load_negatives(learned), settings, training, options.cache)
         others = {}
@@ -327,7 +324,7 @@ def _baseline(name: str, settings: "TrainingSettings") -> "TrainingSettings":
     return replace(plain, backbone="efficientnet_lite0_random")
 
 
-def _classes_of(labels: set[str]) -> "Mapping[str, Sequence[CompiledModel]]":
+def shipped_classes_of(labels: set[str]) -> "Mapping[str, Sequence[CompiledModel]]":
     """Load the shipped classes that the dataset has."""
     further = list_further_classes()
     names = [name for name in list_classes() if name in labels and name not in further]

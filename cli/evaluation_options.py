@@ -1,12 +1,17 @@
 """Options that every evaluation has, and what they choose."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from shapewright.errors import EvaluationError
+
+if TYPE_CHECKING:
+    from shapewright.evaluation.datasets import LabelledFile
 
 DatasetFolder = Annotated[
     Path, typer.Option("--dataset", help="Folder with labels.csv (columns file, class).", show_default=False)
@@ -39,6 +44,23 @@ CacheFolder = Annotated[
 def names_in(text: str | None) -> list[str] | None:
     """Split ``a,b``; ``None`` stays ``None``."""
     return None if text is None else [name.strip() for name in text.split(",") if name.strip()]
+
+
+def chosen_meshes(
+    items: "Sequence[LabelledFile]", classes: str | None, limit: int | None
+) -> "tuple[LabelledFile, ...]":
+    """Return the meshes of ``--classes a,b``, of all classes by default, and at most ``--limit`` of them.
+
+    Raises:
+        EvaluationError: no mesh has one of the classes.
+    """
+    from shapewright.evaluation.datasets import of_classes, spread
+
+    wanted = names_in(classes)
+    chosen = spread(items if wanted is None else of_classes(items, wanted), limit)
+    if not chosen:
+        raise EvaluationError("no mesh of the dataset has one of these classes", where="--classes")
+    return chosen
 
 
 def cache_folder(chosen: Path | None, purpose: str) -> Path:

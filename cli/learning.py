@@ -53,6 +53,19 @@ def kept_classifier(
 ) -> "Classifier":
     """The classifier of these models and settings: of an earlier run, or trained now and kept."""
     from shapewright.classification import load_classifier
+
+    return load_classifier(kept_classifier_file(classes, negatives, settings, progress, cache))
+
+
+def kept_classifier_file(
+    classes: Classes,
+    negatives: "Sequence[CompiledModel]",
+    settings: "TrainingSettings",
+    progress: Progress,
+    cache: Path | None = None,
+) -> Path:
+    """Return the file of :func:`kept_classifier`, for processes that each load it themselves."""
+    from shapewright.classification import load_classifier
     from shapewright.errors import ClassifierError
     from shapewright.network import load_backbone
     from shapewright.training.versions import learning_versions
@@ -68,6 +81,6 @@ def kept_classifier(
         except ClassifierError:
             kept = None  # damaged: made anew
         if kept is not None and (kept.exemplars is not None) == (settings.exemplars and settings.vary):
-            return kept
+            return path
     save_classifier(learn(classes, negatives, settings, progress, cache), path)
-    return load_classifier(path)
+    return path
