@@ -1,10 +1,13 @@
-"""A classifier without a network: it tells long things from flat ones by their extents."""
+"""Classifiers without a network: they tell long things from flat ones by their extents."""
+
+from dataclasses import replace
 
 import numpy as np
 
 from shapewright.classification import Classification
 from shapewright.classification.evidence import FLOOR
-from shapewright.mesh import TriangleMesh
+from shapewright.errors import MeshError
+from shapewright.mesh import PointCloud, TriangleMesh
 
 
 class ExtentClassifier:
@@ -16,10 +19,10 @@ class ExtentClassifier:
         self.asked = 0
 
     def classify(
-        self, mesh: TriangleMesh, *, views: int = 10, rng: np.random.Generator | None = None
+        self, mesh: TriangleMesh | PointCloud, *, views: int = 10, rng: np.random.Generator | None = None
     ) -> Classification:
         self.asked += 1
-        short, middle, long = np.sort(np.ptp(mesh.vertices, axis=0))
+        short, middle, long = np.sort(np.ptp(mesh.bounds, axis=0))
         slab = float((middle - short) / (long - short)) if long > short else 0.5
         probabilities = _highest_first({"slab": slab, "rod": 1.0 - slab})
         scores = {name: float(np.log(share + FLOOR)) for name, share in probabilities.items()}
@@ -36,6 +39,28 @@ class ExtentClassifier:
             per_view=np.tile(np.array([1.0 - slab, slab], dtype=np.float32), (views, 1)),
             images=np.zeros((views, 8, 8, 3), dtype=np.uint8),
         )
+
+
+class CubeRefuser(ExtentClassifier):
+    """The same, but the less the sides differ, the less it is known."""
+
+    def classify(
+        self, mesh: TriangleMesh | PointCloud, *, views: int = 10, rng: np.random.Generator | None = None
+    ) -> Classification:
+        sides = np.ptp(mesh.bounds, axis=0)
+        answer = super().classify(mesh, views=views, rng=rng)
+        return replace(answer, known=float(1.0 - 0.9 * sides.min() / sides.max()))
+
+
+class MeshesOnly(CubeRefuser):
+    """The same, but it refuses point clouds."""
+
+    def classify(
+        self, mesh: TriangleMesh | PointCloud, *, views: int = 10, rng: np.random.Generator | None = None
+    ) -> Classification:
+        if isinstance(mesh, PointCloud):
+            raise MeshError("there are no faces")
+        return super().classify(mesh, views=views, rng=rng)
 
 
 def _highest_first(shares: dict[str, float]) -> dict[str, float]:
