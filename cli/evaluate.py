@@ -9,6 +9,7 @@ import typer
 from cli.console import AsJson, flowing, print_json, shown_progress, stdout
 from cli.evaluate_classifier import classification, retrieval
 from cli.evaluate_estimation import estimation
+from cli.evaluate_robustness import robustness
 from cli.evaluation_options import (
     CacheFolder,
     Classes,
@@ -46,6 +47,7 @@ app = typer.Typer(rich_markup_mode="rich", no_args_is_help=True)
           [bold]shapewright evaluate classification --dataset DIR[/]                trains, if need be
           [bold]shapewright evaluate retrieval --dataset DIR -c mine.onnx[/]        a classifier of yours
           [bold]shapewright evaluate estimation --dataset DIR --report fits.html[/]   queries and fits side by side
+          [bold]shapewright evaluate robustness --dataset DIR --limit 50[/]         corrupted meshes
           [bold]shapewright evaluate coverage --dataset DIR --report cover.html[/]  with pictures
         """
     )
@@ -134,7 +136,7 @@ def coverage(
         typer.echo(str(report))
 
 
-for verb in (classification, retrieval, estimation, coverage):
+for verb in (classification, retrieval, estimation, robustness, coverage):
     app.command(verb.__name__, help=flowing(verb.__doc__))(verb)
 
 

@@ -93,7 +93,7 @@ def measure_robustness(
         views: pictures of each mesh.
         seed: of the corruptions and of the views.
         jobs: processes; with 1 the work is done here.
-        progress: told of every mesh; may cancel.
+        progress: receives a report after every mesh; may cancel.
 
     Raises:
         ClassifierError: the classifier cannot be loaded.
@@ -134,7 +134,7 @@ def measure_robustness(
             skipped += outcome.skipped
     if not meshes:
         reason = f" ({skipped[0].file}: {skipped[0].reason})" if skipped else ""
-        raise EvaluationError(f"there is no mesh to classify{reason}")
+        raise EvaluationError(f"no mesh could be classified{reason}")
     return Robustness(classifier.class_names, trial.conditions, tuple(meshes), tuple(skipped))
 
 

@@ -170,16 +170,16 @@ def test_a_mesh_that_is_refused_is_skipped_under_that_condition_alone(items: tup
 
 
 def test_a_dataset_that_cannot_be_read_is_refused(items: tuple[LabelledFile, ...]) -> None:
-    with pytest.raises(EvaluationError, match=r"no mesh to classify \(broken.off"):
+    with pytest.raises(EvaluationError, match=r"no mesh could be classified \(broken.off"):
         measure_robustness(items[6:], CubeRefuser, SOME)
 
 
 def cancel_after(count: int) -> Callable[[float, str], None]:
-    told: list[float] = []
+    reports: list[float] = []
 
     def report(fraction: float, message: str) -> None:
-        told.append(fraction)
-        if len(told) > count:
+        reports.append(fraction)
+        if len(reports) > count:
             raise Cancelled
 
     return report
