@@ -94,7 +94,7 @@ class _Process:
         # the environment is made anew: no secrets of ours, and one thread, as each reserves address space
         environment = {
             "PATH": os.defpath,
-            "PYTHONPATH": str(Path(__file__).resolve().parents[1]),
+            "PYTHONPATH": str(Path(__file__).resolve().parents[2]),
             "OPENBLAS_NUM_THREADS": "1",
             "OMP_NUM_THREADS": "1",
             "MKL_NUM_THREADS": "1",
