@@ -14,6 +14,7 @@ from jaxtyping import Float, Int
 
 from shapewright.errors import MeshError
 from shapewright.mesh.glb import GlbWriter
+from shapewright.mesh.places import first_at_place
 from shapewright.whole_file import write_whole
 
 WRITABLE_TYPES = ("glb", "obj", "off", "ply", "stl")
@@ -152,12 +153,7 @@ class TriangleMesh:
         Raises:
             MeshError: nothing with an area is left.
         """
-        order = np.lexsort(self.vertices.T)  # stable: of equal positions the first stays first
-        ordered = self.vertices[order]
-        differs = np.concatenate([[True], (ordered[1:] != ordered[:-1]).any(axis=1)])
-        first = np.empty(len(order), dtype=np.int64)
-        first[order] = order[np.flatnonzero(differs)[np.cumsum(differs) - 1]]
-        faces = first[self.faces]
+        faces = first_at_place(self.vertices)[self.faces]
         a, b, c = (self.vertices[faces[:, k]] for k in range(3))
         diagonal = float(np.linalg.norm(self.bounds[1] - self.bounds[0]))
         areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
