@@ -88,14 +88,19 @@ def load_negatives(class_names: Iterable[str]) -> "list[CompiledModel]":
     return [load_compiled(name) for other in list_further_classes() if other not in known for name in classes[other]]
 
 
-def find_meshes(sources: Iterable[Path]) -> list[Path]:
+def find_meshes(sources: Iterable[Path], *, with_clouds: bool = False) -> list[Path]:
     """Find mesh files: those named, and below a folder those whose endings say so, in the order of names; once each.
+
+    Args:
+        sources: files and folders.
+        with_clouds: whether endings of point clouds count below a folder, except those that other files share.
 
     Raises:
         MeshFileError: a source is not there, or a folder holds none.
     """
-    from shapewright.mesh.sniff import READABLE_TYPES
+    from shapewright.mesh.sniff import COMMON_TYPES, MESH_TYPES, QUERY_TYPES
 
+    wanted = [one for one in QUERY_TYPES if one not in COMMON_TYPES] if with_clouds else MESH_TYPES
     found: dict[Path, None] = {}
     for source in sources:
         if not source.is_dir():
@@ -103,9 +108,9 @@ def find_meshes(sources: Iterable[Path]) -> list[Path]:
                 raise MeshFileError("there is no such file or folder", where=ascii(str(source)))
             found[source] = None
             continue
-        below = [p for p in sorted(source.rglob("*")) if p.suffix.lower().lstrip(".") in READABLE_TYPES and p.is_file()]
+        below = [p for p in sorted(source.rglob("*")) if p.suffix.lower().lstrip(".") in wanted and p.is_file()]
         if not below:
-            raise MeshFileError(f"no mesh below this folder ({', '.join(READABLE_TYPES)})", where=ascii(str(source)))
+            raise MeshFileError(f"no mesh below this folder ({', '.join(wanted)})", where=ascii(str(source)))
         found.update(dict.fromkeys(below))
     return list(found)
 

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from shapewright.classification import Classification, Classifier
     from shapewright.errors import Cancelled, ShapewrightError
     from shapewright.estimation import Estimation, EstimationSettings, Query, estimate
-    from shapewright.mesh import TriangleMesh
-    from shapewright.mesh.file import load_mesh, parse_mesh
+    from shapewright.mesh import PointCloud, TriangleMesh
+    from shapewright.mesh.file import load_mesh, load_query, parse_mesh
     from shapewright.modeling import CompiledModel, Parameter, ProceduralModel, Recorder, compile_model
     from shapewright.rendering import render_images, render_mesh
     from shapewright.training import TrainedClassifier, TrainingSettings, train_classifier
@@ -25,6 +25,7 @@ _HOMES = {
     "Estimation": "estimation",
     "EstimationSettings": "estimation",
     "Parameter": "modeling",
+    "PointCloud": "mesh",
     "ProceduralModel": "modeling",
     "Query": "estimation",
     "Recorder": "modeling",
@@ -35,6 +36,7 @@ _HOMES = {
     "compile_model": "modeling",
     "estimate": "estimation",
     "load_mesh": "mesh.file",
+    "load_query": "mesh.file",
     "parse_mesh": "mesh.file",
     "render_images": "rendering",
     "render_mesh": "rendering",
@@ -49,6 +51,7 @@ __all__ = [
     "Estimation",
     "EstimationSettings",
     "Parameter",
+    "PointCloud",
     "ProceduralModel",
     "Query",
     "Recorder",
@@ -59,6 +62,7 @@ __all__ = [
     "compile_model",
     "estimate",
     "load_mesh",
+    "load_query",
     "parse_mesh",
     "render_images",
     "render_mesh",

@@ -17,7 +17,7 @@ from service.routes import NOT_MODIFIED, binary, problems
 from service.schemas.meshes import MeshOut, MeshPageOut
 from shapewright.mesh import glb
 from shapewright.mesh.file import ReadLimits, parse_mesh
-from shapewright.mesh.sniff import READABLE_TYPES
+from shapewright.mesh.sniff import MESH_TYPES
 
 router = APIRouter(prefix="/v1/meshes", tags=["meshes"])
 
@@ -56,8 +56,8 @@ async def create_mesh(services: ServicesDep, response: Response, file: UploadFil
 
 def _file_type(file_name: str) -> str:
     file_type = PurePosixPath(file_name).suffix.lower().removeprefix(".")
-    if file_type not in READABLE_TYPES:
-        known = ", ".join(f".{known}" for known in READABLE_TYPES)
+    if file_type not in MESH_TYPES:
+        known = ", ".join(f".{known}" for known in MESH_TYPES)
         raise ProblemError(
             Problem(
                 415,

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from shapewright.errors import MeshError, MeshFileError
-from shapewright.mesh import TriangleMesh
+from shapewright.mesh import PointCloud, TriangleMesh
 from shapewright.mesh.decode import ReadLimits
 
 _WHERE = "reader process"
@@ -48,11 +48,11 @@ class MeshReader:
         for process in idle:
             process.end()
 
-    def parse(self, data: bytes, file_type: str, limits: ReadLimits) -> TriangleMesh:
-        """Read checked content of a normalised type; see :func:`shapewright.mesh.file.parse_mesh`.
+    def parse(self, data: bytes, file_type: str, limits: ReadLimits) -> TriangleMesh | PointCloud:
+        """Read checked content of a normalised type; see :func:`shapewright.mesh.file.parse_query`.
 
         Raises:
-            MeshFileError: as :func:`shapewright.mesh.decode.decode_mesh`, or the child ran out of memory or time.
+            MeshFileError: as :func:`shapewright.mesh.decode.decode_query`, or the child ran out of memory or time.
         """
         request = {"file_type": file_type, "limits": vars(limits)}
         process = self._waiting()
@@ -67,7 +67,7 @@ class MeshReader:
             process.end()
             raise
         self._put_back(process, trusted=status == 0)
-        return _mesh_of(status, output, limits)
+        return _query_of(status, output, limits)
 
     def _waiting(self) -> "_Process":
         with self._lock:
@@ -159,7 +159,7 @@ class _Process:
                 os.killpg(self._popen.pid, signal.SIGKILL)
 
 
-def _mesh_of(status: int, output: bytes, limits: ReadLimits) -> TriangleMesh:
+def _query_of(status: int, output: bytes, limits: ReadLimits) -> TriangleMesh | PointCloud:
     if status == -signal.SIGXCPU:
         raise MeshFileError(f"reading took more than {limits.cpu_s} s of processor time", where=_WHERE)
     if status != 0:
@@ -177,6 +177,8 @@ def _mesh_of(status: int, output: bytes, limits: ReadLimits) -> TriangleMesh:
         split = int(answer["vertices"]) * 24
         vertices = np.frombuffer(body[:split], dtype=np.float64).reshape(-1, 3)
         faces = np.frombuffer(body[split:], dtype=np.int64).reshape(-1, 3)
+        if answer["faces"] == 0:
+            return PointCloud(vertices.copy())
         return TriangleMesh(vertices.copy(), faces.copy())
     except MeshFileError:
         raise

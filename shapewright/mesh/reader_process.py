@@ -17,9 +17,15 @@ import traceback
 from typing import Any, BinaryIO, Final
 
 from shapewright.errors import MeshFileError
-from shapewright.mesh import decode
+from shapewright.mesh import PointCloud, decode
 
 _LONGEST_HEADER: Final = 1 << 16
+_TRIMESH: Final = (
+    "trimesh", "trimesh.exchange.gltf", "trimesh.exchange.ply", "trimesh.visual.material", "PIL.Image"
+)  # fmt: skip
+_LASPY: Final = ("laspy", "lazrs")
+_IMPORTED: Final = {"ply": _TRIMESH, "glb": _TRIMESH, "gltf": _TRIMESH, "las": _LASPY, "laz": _LASPY}
+"""Modules that reading a type takes, and what they import only while reading."""
 _PR_SET_DUMPABLE: Final = 4
 
 
@@ -30,8 +36,8 @@ def main() -> None:
     while line := source.readline():
         request = json.loads(line)
         data = source.read(request["size"])
-        if request["file_type"] in ("ply", "glb", "gltf"):
-            _load_trimesh()
+        for name in _IMPORTED.get(request["file_type"], ()):  # now, as a child can open no module
+            importlib.import_module(name)
         status, output = _in_child(request["file_type"], request["limits"], data)
         sink.write(json.dumps({"status": status, "size": len(output)}).encode() + b"\n")
         sink.write(output)
@@ -80,24 +86,21 @@ def _answer(file_type: str, limits: dict[str, Any], data: bytes, sink: BinaryIO)
 
 def _parse(file_type: str, limits: dict[str, Any], data: bytes) -> tuple[dict[str, object], list[bytes]]:
     try:
-        mesh = decode.decode_mesh(data, file_type, decode.ReadLimits(**limits))
+        query = decode.decode_query(data, file_type, decode.ReadLimits(**limits))
     except MeshFileError as error:
         return {"error": error.message, "where": error.where}, []
-    counts: dict[str, object] = {"vertices": len(mesh.vertices), "faces": len(mesh.faces)}
-    return counts, [mesh.vertices.tobytes(), mesh.faces.tobytes()]
+    if isinstance(query, PointCloud):
+        return {"vertices": len(query.points), "faces": 0}, [query.points.tobytes()]
+    return {"vertices": len(query.vertices), "faces": len(query.faces)}, [
+        query.vertices.tobytes(),
+        query.faces.tobytes(),
+    ]
 
 
 def _keep_others_out() -> None:
     """Let no process of the same user read this one's memory or change it (Linux)."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_PR_SET_DUMPABLE, 0)
-
-
-def _load_trimesh() -> None:
-    """Import trimesh and what it imports only while reading, as a child can open no module."""
-    importlib.import_module("trimesh")
-    for name in ("trimesh.exchange.gltf", "trimesh.exchange.ply", "trimesh.visual.material", "PIL.Image"):
-        importlib.import_module(name)
 
 
 def _limit(kind: int, value: float, spare: int = 0) -> None:

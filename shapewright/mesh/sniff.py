@@ -5,9 +5,19 @@ import re
 import struct
 
 from shapewright.errors import MeshFileError
+from shapewright.mesh.rows import is_rows
 
-READABLE_TYPES = ("glb", "gltf", "obj", "off", "ply", "stl")
+MESH_TYPES = ("glb", "gltf", "obj", "off", "ply", "stl")
+"""The file types that a mesh can be read from; where a file has no faces, its vertices are a point cloud."""
+_TEXT_TYPES = ("asc", "csv", "pts", "txt", "xyz")
+_LAS_TYPES = ("las", "laz")
+POINT_TYPES = tuple(sorted((*_TEXT_TYPES, *_LAS_TYPES, "pcd")))
+"""The file types that hold nothing but a point cloud."""
+QUERY_TYPES = tuple(sorted((*MESH_TYPES, *POINT_TYPES)))
 """The file types that can be read."""
+_FAMILIES = {**dict.fromkeys(_TEXT_TYPES, "xyz"), **dict.fromkeys(_LAS_TYPES, "las")}
+COMMON_TYPES = ("asc", "csv", "txt")
+"""Those of them whose ending says little: many a file of another kind is named so."""
 
 _FOREIGN = (
     (b"\x89PNG\r\n\x1a\n", "a PNG picture"),
@@ -22,26 +32,33 @@ _FOREIGN = (
 )
 _OBJ_VERTEX = re.compile(rb"^[ \t]*v[ \t]+[-+.\dnN]", re.MULTILINE)
 _OFF_HEADER = re.compile(rb"(?:\s|#[^\n]*\n)*C?OFF\b(?! *BINARY)")
+_PCD_HEADER = re.compile(rb"(?:\s|#[^\n]*\n)*VERSION[ \t]+\.?\d|(?:\s|#[^\n]*\n)*(?:FIELDS|COLUMNS)[ \t]")
 _HEAD_BYTES = 1 << 16
+_E57 = "an E57 scan, which is not read; export it as LAS, PCD or PLY"
 
 
 def normalized_type(file_type: str) -> str:
     """Turn ``".OBJ"`` into ``"obj"``.
 
     Raises:
-        MeshFileError: not one of :data:`READABLE_TYPES`.
+        MeshFileError: not one of :data:`QUERY_TYPES`.
     """
     wanted = file_type.strip().lower().removeprefix(".")
-    if wanted not in READABLE_TYPES:
+    if wanted == "e57":
+        raise MeshFileError(f"this is {_E57}", where="file type")
+    if wanted not in QUERY_TYPES:
         raise MeshFileError(
-            f"{file_type[:20]!r} is no mesh type we read; known: {', '.join(READABLE_TYPES)}",
+            f"{file_type[:20]!r} is no mesh type we read; known: {', '.join(QUERY_TYPES)}",
             where="file type",
         )
     return wanted
 
 
 def detected_type(data: bytes) -> str | None:
-    """Guess the type from the first bytes: a readable type, a description of something else, or ``None``."""
+    """Guess the type from the first bytes: a readable type, a description of something else, or ``None``.
+
+    Text with a point on each line is ``xyz``, LAS and LAZ are ``las``.
+    """
     for magic, description in _FOREIGN:
         if data.startswith(magic):
             return description
@@ -50,6 +67,12 @@ def detected_type(data: bytes) -> str | None:
         return "glb"
     if re.match(rb"ply\s", head):
         return "ply"
+    if head.startswith(b"LASF"):
+        return "las"
+    if head.startswith(b"ASTM-E57"):
+        return _E57
+    if _PCD_HEADER.match(head):
+        return "pcd"
     if len(data) >= 84 and len(data) == 84 + 50 * struct.unpack_from("<I", data, 80)[0]:
         return "stl"
     if re.match(rb"\s*solid\b", head, re.IGNORECASE) and b"facet" in head.lower():
@@ -63,7 +86,9 @@ def detected_type(data: bytes) -> str | None:
         return "gltf" if b'"asset"' in data else "a JSON document"
     if start.startswith(b"<"):
         return "an XML or HTML document"
-    return "obj" if _OBJ_VERTEX.search(data) else None
+    if _OBJ_VERTEX.search(data):
+        return "obj"
+    return "xyz" if is_rows(head) else None
 
 
 def check_content(data: bytes, file_type: str) -> None:
@@ -86,8 +111,8 @@ def check_content(data: bytes, file_type: str) -> None:
         )
     if found is None:
         raise MeshFileError(f"the content is not {file_type.upper()}", where="byte 0")
-    if found != file_type:
-        what = found.upper() if found in READABLE_TYPES else found
+    if found != _FAMILIES.get(file_type, file_type):
+        what = found.upper() if found in QUERY_TYPES else found
         raise MeshFileError(f"the type says {file_type.upper()}, but the content is {what}", where="byte 0")
     if file_type == "glb":
         _check_gltf_document(_glb_document(data))

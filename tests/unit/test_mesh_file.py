@@ -18,9 +18,9 @@ from hypothesis import strategies as st
 
 from shapewright.errors import MeshFileError
 from shapewright.mesh import TriangleMesh
-from shapewright.mesh.decode import decode_mesh
+from shapewright.mesh.decode import decode_query
 from shapewright.mesh.file import DEFAULT_LIMITS, MeshReader, load_mesh, parse_mesh
-from shapewright.mesh.sniff import READABLE_TYPES, check_content
+from shapewright.mesh.sniff import MESH_TYPES, POINT_TYPES, check_content
 
 BALL = TriangleMesh.from_trimesh(trimesh.creation.icosphere(2)).cleaned()
 WRITTEN = {name: BALL.to_bytes(name) for name in ("glb", "obj", "off", "ply", "stl")}
@@ -189,7 +189,7 @@ def test_a_truncated_obj_is_refused_when_vertices_are_missing():
 def refuse_here(data, file_type):
     """The same checks as in the child, without a process for each."""
     check_content(data, file_type)
-    decode_mesh(data, file_type, DEFAULT_LIMITS)
+    decode_query(data, file_type, DEFAULT_LIMITS)
 
 
 @settings(max_examples=150, deadline=None)
@@ -236,7 +236,7 @@ def test_a_bomb_of_instances_stops_at_a_limit():
 def test_the_child_cannot_open_anything_once_it_reads():
     program = """
 from shapewright.mesh import decode as reading, reader_process
-reading.decode_mesh = lambda *_: open("/etc/hostname")
+reading.decode_query = lambda *_: open("/etc/hostname")
 reader_process.main()
 """
     request = {"file_type": "obj", "limits": vars(DEFAULT_LIMITS), "size": len(WRITTEN["obj"])}
@@ -286,7 +286,7 @@ def decode(data, *_):
         frame = frame.f_back
     raise reading.MeshFileError(str(found))
 
-reading.decode_mesh = decode
+reading.decode_query = decode
 reader_process.main()
 """
     limits = vars(replace(DEFAULT_LIMITS, vertices=1000, faces=1000))
@@ -340,7 +340,8 @@ def test_paths_that_cannot_be_read(tmp_path, name):
 
 
 def test_readable_types_are_the_documented_ones():
-    assert set(READABLE_TYPES) == {"obj", "off", "ply", "stl", "glb", "gltf"}
+    assert set(MESH_TYPES) == {"obj", "off", "ply", "stl", "glb", "gltf"}
+    assert set(POINT_TYPES) == {"asc", "csv", "las", "laz", "pcd", "pts", "txt", "xyz"}
 
 
 @pytest.mark.real_data
