@@ -24,7 +24,9 @@ READERS = 4
 def classify(
     sources: Annotated[
         list[Path],
-        typer.Argument(metavar="FOLDER|MESH...", help="Mesh files, or folders with some.", show_default=False),
+        typer.Argument(
+            metavar="FOLDER|MESH...", help="Files of meshes or point clouds, or folders with some.", show_default=False
+        ),
     ],
     classifier: Annotated[
         Path, typer.Option("--classifier", "-c", help="The .onnx file of `shapewright train`.", show_default=False)
@@ -42,37 +44,40 @@ def classify(
     jobs: Jobs = None,
     as_json: AsJson = False,
 ) -> None:
-    """Tell the class of one or more meshes, with probabilities, or that it is unknown.
+    """Tell the class of one or more meshes or point clouds, with probabilities, or that it is unknown.
 
     Geometry counts beside the pictures where the exemplars that `shapewright train` wrote lie beside the classifier.
-    Of several meshes those that cannot be used are listed with the reason.
+    Of several meshes those that cannot be used are listed with the reason. A file without faces is a point cloud: PLY,
+    OBJ, OFF, LAS, LAZ, PCD, XYZ, PTS; of a folder, not ASC, CSV and TXT, which have to be named.
 
     Examples:
 
       [bold]shapewright classify query.off -c classifier.onnx[/]
+      [bold]shapewright classify scan.pcd -c classifier.onnx[/]
       [bold]shapewright classify my-meshes more/*.obj -c classifier.onnx --json[/]
       [bold]shapewright classify query.off -c classifier.onnx --fit --pictures seen[/]
     """
     import numpy as np
 
     from shapewright.classification import load_classifier
-    from shapewright.mesh.file import load_meshes
+    from shapewright.mesh.file import load_queries
     from shapewright.rendering import compose_grid
 
-    files = find_meshes(sources)
+    files = find_meshes(sources, with_clouds=True)
     network = load_classifier(classifier)
     models = _shipped(network.class_names) if fit else None
     results: list[dict[str, Any]] = []
     skipped: dict[str, MeshFileError] = {}
     started_s = time.monotonic()
     with threads(jobs) as used, shown_progress("classifying") as progress:
-        for number, (file, mesh) in enumerate(zip(files, load_meshes(files, jobs=min(used, READERS)), strict=True)):
+        read = load_queries(files, jobs=min(used, READERS))
+        for number, (file, query) in enumerate(zip(files, read, strict=True)):
             progress.report(number / len(files), file.name)
             mesh_started_s = time.monotonic()
             try:
-                if isinstance(mesh, MeshFileError):
-                    raise mesh
-                found = network.classify(mesh, views=views, rng=np.random.default_rng(seed), models=models)
+                if isinstance(query, MeshFileError):
+                    raise query
+                found = network.classify(query, views=views, rng=np.random.default_rng(seed), models=models)
             except MeshError as error:
                 skipped[str(file)] = MeshFileError(error.message, where=error.where)  # without what the frames hold
                 continue

@@ -10,7 +10,7 @@ from shapewright.errors import ClassifierError, MeshFileError
 from shapewright.progress import Progress
 
 if TYPE_CHECKING:
-    from shapewright.mesh import TriangleMesh
+    from shapewright.mesh import PointCloud, TriangleMesh
     from shapewright.retrieval import CollectionIndex, SkippedMesh
     from shapewright.retrieval.indexing import MeshClassifier
 
@@ -101,8 +101,8 @@ def _kept(path: Path, classifier: "MeshClassifier", classifier_digest: str, *, s
     return index
 
 
-def _read(files: "dict[str, Path]", jobs: int) -> "Iterator[tuple[str, TriangleMesh | str]]":
-    from shapewright.mesh.file import load_meshes
+def _read(files: "dict[str, Path]", jobs: int) -> "Iterator[tuple[str, TriangleMesh | PointCloud | str]]":
+    from shapewright.mesh.file import load_queries
 
-    for digest, mesh in zip(files, load_meshes(list(files.values()), jobs=jobs), strict=True):
-        yield digest, mesh.message if isinstance(mesh, MeshFileError) else mesh
+    for digest, query in zip(files, load_queries(list(files.values()), jobs=jobs), strict=True):
+        yield digest, query.message if isinstance(query, MeshFileError) else query

@@ -35,7 +35,9 @@ SHEET_COLUMNS, SHEET_SIZE = 6, 192
 def retrieve(
     sources: Annotated[
         list[Path],
-        typer.Argument(metavar="FOLDER|MESH...", help="Mesh files, or folders with some.", show_default=False),
+        typer.Argument(
+            metavar="FOLDER|MESH...", help="Files of meshes or point clouds, or folders with some.", show_default=False
+        ),
     ],
     classifier: Annotated[
         Path, typer.Option("--classifier", "-c", help="The .onnx file of `shapewright train`.", show_default=False)
@@ -48,7 +50,10 @@ def retrieve(
         typer.Option("--model", "-m", help="Find meshes like this shipped model, or JSON file.", show_default=False),
     ] = None,
     mesh: Annotated[
-        Path | None, typer.Option("--mesh", dir_okay=False, help="Find meshes like this one.", show_default=False)
+        Path | None,
+        typer.Option(
+            "--mesh", dir_okay=False, help="Find meshes like this one, or this point cloud.", show_default=False
+        ),
     ] = None,
     evidence: Annotated[
         EvidenceName | None,
@@ -103,7 +108,7 @@ def retrieve(
     chosen = evidence or EvidenceName(default_evidence(class_name))
 
     started_s = time.monotonic()
-    files = find_meshes(sources)
+    files = find_meshes(sources, with_clouds=True)
     queried = [] if mesh is None else find_meshes([mesh])
     network = load_classifier(classifier)
     beside = exemplars_file(classifier)
@@ -223,17 +228,17 @@ def _first_reason(indexed: IndexedFiles, files: list[Path]) -> str:
 
 def _draw(sheet: Path, shown: "list[RankedMesh]", mesh: Path | None, wanted: str) -> None:
     from cli.picture import save_picture
-    from shapewright.mesh.file import MeshReader, load_mesh
+    from shapewright.mesh.file import MeshReader, load_query
     from shapewright.rendering import LabelledMesh, compose_mesh_sheet
 
     with MeshReader() as reader:
         found = (
-            LabelledMesh(load_mesh(one.name, reader=reader), f"{place}. {Path(one.name).name}", one.caption)
+            LabelledMesh(load_query(one.name, reader=reader), f"{place}. {Path(one.name).name}", one.caption)
             for place, one in enumerate(shown, 1)
         )
         sections: list[tuple[str, Iterable[LabelledMesh]]] = [(f"meshes {wanted}", found)]
         if mesh is not None:
-            sections.insert(0, ("query", [LabelledMesh(load_mesh(mesh, reader=reader), mesh.name)]))
+            sections.insert(0, ("query", [LabelledMesh(load_query(mesh, reader=reader), mesh.name)]))
         pixels = compose_mesh_sheet(sections, size=SHEET_SIZE, columns=SHEET_COLUMNS)
     sheet.parent.mkdir(parents=True, exist_ok=True)
     save_picture(pixels, sheet)

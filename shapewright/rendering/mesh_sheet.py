@@ -6,16 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, UInt8
 
-from shapewright.mesh import TriangleMesh
+from shapewright.mesh import PointCloud, TriangleMesh
 from shapewright.rendering.pictures import render_mesh
 from shapewright.rendering.sheet import Cell, compose_sheet
+from shapewright.rendering.specks import specks
 
 
 @dataclass(frozen=True, eq=False)
 class LabelledMesh:
-    """A mesh and the two lines below its picture."""
+    """A mesh or a point cloud, and the two lines below its picture."""
 
-    mesh: TriangleMesh
+    mesh: TriangleMesh | PointCloud
     title: str
     caption: str = ""
 
@@ -40,7 +41,8 @@ def compose_mesh_sheet(
     """
 
     def cell(one: LabelledMesh) -> Cell:
-        return Cell(render_mesh(one.mesh, rotation=rotation, size=size), one.title, one.caption)
+        mesh = specks(one.mesh) if isinstance(one.mesh, PointCloud) else one.mesh
+        return Cell(render_mesh(mesh, rotation=rotation, size=size), one.title, one.caption)
 
     drawn = [(heading, [cell(one) for one in meshes]) for heading, meshes in sections]
     return compose_sheet(drawn, size, max(1, min(columns, max(len(cells) for _, cells in drawn))))

@@ -10,7 +10,7 @@ import numpy as np
 from shapewright.classification.classifier import DEFAULT_VIEWS, Classification
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor
 from shapewright.errors import MeshError
-from shapewright.mesh import TriangleMesh
+from shapewright.mesh import PointCloud, TriangleMesh
 from shapewright.progress import NULL_PROGRESS, Progress
 from shapewright.retrieval.collection_index import CollectionIndex
 from shapewright.retrieval.ranking import MeshQuery
@@ -28,9 +28,9 @@ class MeshClassifier(Protocol):
     class_names: tuple[str, ...]
 
     def classify(
-        self, mesh: TriangleMesh, *, views: int = DEFAULT_VIEWS, rng: np.random.Generator | None = None
+        self, query: TriangleMesh | PointCloud, /, *, views: int = DEFAULT_VIEWS, rng: np.random.Generator | None = None
     ) -> Classification:
-        """Tell what a mesh is."""
+        """Tell what a mesh or a point cloud is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,24 +64,29 @@ class Indexed:
     skipped: tuple[SkippedMesh, ...] = ()
 
 
-def look_at(mesh: TriangleMesh, classifier: MeshClassifier, *, views: int = DEFAULT_VIEWS) -> MeshFacts:
-    """Classify and describe a mesh.
+def look_at(query: TriangleMesh | PointCloud, classifier: MeshClassifier, *, views: int = DEFAULT_VIEWS) -> MeshFacts:
+    """Classify and describe a mesh or a point cloud.
 
     Raises:
-        MeshError: it has no surface that can be described.
+        MeshError: it has no surface that can be described, or is a point cloud that the classifier does not describe.
         RenderingError: no headless OpenGL.
     """
-    found = classifier.classify(mesh, views=views, rng=np.random.default_rng(SEED))
+    found = classifier.classify(query, views=views, rng=np.random.default_rng(SEED))
+    descriptor = found.descriptor
+    if descriptor is None:
+        if isinstance(query, PointCloud):
+            raise MeshError("a point cloud needs a classifier with exemplars, and this one has none", where="faces")
+        descriptor = panorama_descriptor(query.vertices, query.faces)
     return MeshFacts(
         probabilities=found.probabilities,
         picture_probabilities=found.picture_probabilities,
         known=1.0 if found.known is None else found.known,
-        descriptor=found.descriptor or panorama_descriptor(mesh.vertices, mesh.faces),
+        descriptor=descriptor,
     )
 
 
 def index_chunks(
-    meshes: Iterable[tuple[str, TriangleMesh | str]],
+    meshes: Iterable[tuple[str, TriangleMesh | PointCloud | str]],
     classifier: MeshClassifier,
     classifier_digest: str,
     *,
@@ -120,7 +125,7 @@ def index_chunks(
 
 
 def index_meshes(
-    meshes: Iterable[tuple[str, TriangleMesh | str]],
+    meshes: Iterable[tuple[str, TriangleMesh | PointCloud | str]],
     classifier: MeshClassifier,
     classifier_digest: str,
     *,

@@ -23,6 +23,7 @@ MESHES = {
     "one.off": (b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "fewer than 4 faces"),
     "wrong.stl": (TETRAHEDRON, "the content is OFF"),
     "mesh.exe": (TETRAHEDRON, "no mesh type we read"),
+    "scan.xyz": (b"0 0 0\n1 0 0\n0 1 0\n0 0 1\n", "no faces: it is a cloud of 4 points"),
     "link.gltf": (LINK, "buffers[0].uri"),
 }
 

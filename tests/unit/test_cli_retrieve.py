@@ -9,6 +9,7 @@ from fake_classifier import ExtentClassifier
 from PIL import Image
 from small_dataset import rod, slab
 
+from shapewright.distances.surface import uniform_points
 from shapewright.modeling import compile_model
 from shapewright.retrieval import CollectionIndex
 
@@ -82,6 +83,21 @@ def test_a_mesh_finds_its_like_without_being_in_the_collection(folder: Path, tmp
     assert outcome.document["n"] == 5
     assert outcome.document["results"][0]["distance"] == pytest.approx(0, abs=1e-3)
     assert files(retrieve("--mesh", "meshes/rod0.off", "--json"))[0] == "rod0.off"
+
+
+def test_point_clouds_are_found_and_find(folder: Path, tmp_path: Path) -> None:
+    scan = tmp_path / "scans" / "scan.xyz"
+    scan.parent.mkdir()
+    rng = np.random.default_rng(0)
+    np.savetxt(scan, uniform_points(compile_model(rod()).instance(np.array([1.0])), 400, rng=rng))
+    (scan.parent / "notes.txt").write_text("no scan")
+    sheet = tmp_path / "sheet.png"
+    like_it = retrieve("--mesh", scan, "--limit", "2", "--json", "--contact-sheet", sheet)
+    assert set(files(like_it)) == {"rod0.off", "rod1.off"}
+    assert sheet.is_file()
+    among = retrieve(scan.parent, "--class", "rod", "--json", "--contact-sheet", sheet)
+    assert set(files(among)[:3]) == {"rod0.off", "rod1.off", "scan.xyz"}
+    assert [Path(skipped["file"]).name for skipped in among.document["skipped"]] == ["broken.off"]
 
 
 def test_a_second_query_looks_at_new_meshes_only(folder: Path, tmp_path: Path) -> None:
