@@ -21,7 +21,7 @@ from workers.settings import WorkerSettings
 from workers.stopping import StopNotice, WorkerStopping
 
 if TYPE_CHECKING:
-    from shapewright.mesh import TriangleMesh
+    from shapewright.mesh import PointCloud, TriangleMesh
     from shapewright.mesh.file import MeshReader
     from shapewright.modeling import ProceduralModel
 
@@ -162,13 +162,22 @@ class JobContext:
             document = catalog.get_model(session, model_id).document
         return ProceduralModel.from_json(document)
 
-    def load_query(self, mesh_id: str) -> "TriangleMesh":
-        """Read an uploaded mesh, from the original bytes: the stored GLB has rounded coordinates."""
+    def load_query(self, mesh_id: str) -> "TriangleMesh | PointCloud":
+        """Read an uploaded mesh or point cloud, from the original bytes: the stored GLB has rounded coordinates."""
+        from shapewright.mesh.file import parse_query
+
+        return parse_query(*self._source(mesh_id), reader=self.reader)
+
+    def load_mesh(self, mesh_id: str) -> "TriangleMesh":
+        """Read an uploaded mesh, as :meth:`load_query`; a point cloud is refused."""
         from shapewright.mesh.file import parse_mesh
 
+        return parse_mesh(*self._source(mesh_id), reader=self.reader)
+
+    def _source(self, mesh_id: str) -> tuple[bytes, str]:
         with self.database.reading() as session:
             row = catalog.get_mesh(session, mesh_id)
-        return parse_mesh(self.artifacts.get(row.source_key), row.file_type, reader=self.reader)
+        return self.artifacts.get(row.source_key), row.file_type
 
 
 def with_tuples(settings: dict[str, Any]) -> dict[str, Any]:

@@ -81,7 +81,7 @@ class MeshEstimations:
         from shapewright.estimation.table.rows import answer_of
 
         row, settings = self.row, EstimationSettings.from_dict(self.row.settings)
-        mesh = self._context.load_query(row.mesh_ids[position])
+        mesh = self._context.load_mesh(row.mesh_ids[position])
         query = Query(mesh, units=cast("Unit | None", row.units), up=cast("Axis | None", row.up))
         banks = partial(bank_of, self._context, settings)
         compiled = self._compiled

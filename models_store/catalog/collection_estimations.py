@@ -9,7 +9,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from models_store.catalog.collections import get_collection
-from models_store.catalog.meshes import mesh_names
+from models_store.catalog.meshes import mesh_names, require_faces
 from models_store.catalog.models import get_model, models_of_class
 from models_store.catalog.rows import get_row
 from models_store.errors import StoreError
@@ -46,7 +46,8 @@ def request_collection_estimation(
     Args:
         session: a writing session.
         settings: fields of :class:`shapewright.estimation.EstimationSettings` that differ from the default.
-        collection_id: whose meshes are estimated, whether it is indexed or not.
+        collection_id: whose meshes are estimated, whether it is indexed or not. The rows of point clouds among them
+            say that these have no surface.
         mesh_ids: the meshes, without a collection. Repeated ids count once.
         model_id: the procedural model that rebuilds them.
         class_name: without a model, the class whose models (as they are now) are tried for each mesh.
@@ -58,6 +59,7 @@ def request_collection_estimation(
 
     Raises:
         NotFoundError: the collection, a mesh, the model or the class is not there.
+        MeshError: one of ``mesh_ids`` is a point cloud.
         StoreError: neither a collection nor meshes, neither a model nor a class, or both.
     """
     if (collection_id is None) == (mesh_ids is None):
@@ -71,6 +73,7 @@ def request_collection_estimation(
         if not wanted:
             raise StoreError("expected at least one mesh", where="mesh_ids")
         mesh_names(session, wanted)
+        require_faces(session, list(mesh_ids or ()), "mesh_ids[{}]")
     if model_id is not None:
         model_ids = [get_model(session, model_id).id]
     else:

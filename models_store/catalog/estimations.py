@@ -6,7 +6,7 @@ from typing import Any
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from models_store.catalog.meshes import get_mesh
+from models_store.catalog.meshes import get_mesh, require_faces
 from models_store.catalog.models import get_model, models_of_class
 from models_store.catalog.rows import get_row
 from models_store.errors import StoreError
@@ -45,11 +45,13 @@ def request_estimation(
 
     Raises:
         NotFoundError: the mesh, the model or the class is not there.
+        MeshError: the mesh is a point cloud.
         StoreError: neither a model nor a class, or both.
     """
     if (model_id is None) == (class_name is None):
         raise StoreError("an estimation is asked for with either a model or a class", where="model_id")
     get_mesh(session, mesh_id)
+    require_faces(session, [mesh_id], "mesh_id")
     model_ids = None
     if model_id is not None:
         get_model(session, model_id)

@@ -1,4 +1,4 @@
-"""Meshes: upload and look at."""
+"""Meshes and point clouds: upload and look at."""
 
 from pathlib import PurePosixPath
 from typing import Any
@@ -16,8 +16,8 @@ from service.errors import Problem, ProblemError
 from service.routes import NOT_MODIFIED, binary, problems
 from service.schemas.meshes import MeshOut, MeshPageOut
 from shapewright.mesh import glb
-from shapewright.mesh.file import ReadLimits, parse_mesh
-from shapewright.mesh.sniff import MESH_TYPES
+from shapewright.mesh.file import ReadLimits, parse_query
+from shapewright.mesh.sniff import QUERY_TYPES
 
 router = APIRouter(prefix="/v1/meshes", tags=["meshes"])
 
@@ -33,6 +33,9 @@ router = APIRouter(prefix="/v1/meshes", tags=["meshes"])
 )
 async def create_mesh(services: ServicesDep, response: Response, file: UploadFile) -> Any:
     """Upload a mesh: OBJ, OFF, PLY, STL, GLB or self-contained glTF. The same bytes are the same mesh.
+
+    A file without faces is a point cloud, which classifications and retrievals take: any of these but STL, or LAS, LAZ,
+    PCD, or text with a point on each line (XYZ, PTS, ASC, CSV, TXT).
 
     The file is read in a child process with limits; no link in it is followed.
     """
@@ -56,8 +59,8 @@ async def create_mesh(services: ServicesDep, response: Response, file: UploadFil
 
 def _file_type(file_name: str) -> str:
     file_type = PurePosixPath(file_name).suffix.lower().removeprefix(".")
-    if file_type not in MESH_TYPES:
-        known = ", ".join(f".{known}" for known in MESH_TYPES)
+    if file_type not in QUERY_TYPES:
+        known = ", ".join(f".{known}" for known in QUERY_TYPES)
         raise ProblemError(
             Problem(
                 415,
@@ -78,7 +81,7 @@ def _known(services: Services, data: bytes) -> MeshRow | None:
 def _read_and_store(services: Services, data: bytes, file_name: str, file_type: str) -> tuple[MeshRow, bool]:
     with services.metrics.upload_seconds.time():
         limits = ReadLimits(size_bytes=services.settings.max_mesh_bytes)
-        mesh = parse_mesh(data, file_type, limits=limits, reader=services.mesh_reader)
+        mesh = parse_query(data, file_type, limits=limits, reader=services.mesh_reader)
     return catalog.store_mesh(
         services.database,
         services.artifacts,
@@ -111,7 +114,7 @@ def get_mesh(services: ServicesDep, id: IdPath) -> Any:  # noqa: A002 - the name
     responses={**binary(glb.MEDIA_TYPE, "The mesh as GLB."), **NOT_MODIFIED, **problems(404, 422)},
 )
 def get_mesh_content(request: Request, services: ServicesDep, id: IdPath) -> Response:  # noqa: A002
-    """The mesh as it was read, in its own coordinates, as GLB."""
+    """The mesh as it was read, in its own coordinates, as GLB; a point cloud as points."""
     with services.database.reading() as session:
         key = catalog.get_mesh(session, id).content_key
     return immutable_response(request, f"{id}-content", glb.MEDIA_TYPE, lambda: services.artifacts.get(key))

@@ -1,6 +1,6 @@
-"""Meshes that were uploaded."""
+"""Meshes and point clouds that were uploaded."""
 
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field
 
@@ -11,19 +11,22 @@ Coordinates = Annotated[list[float], Field(min_length=3, max_length=3)]
 
 
 class MeshOut(OutBody):
-    """An uploaded mesh."""
+    """An uploaded mesh or point cloud."""
 
     id: str = Field(description="SHA-256 of the file's bytes.")
+    kind: Literal["mesh", "point_cloud"] = Field(
+        description="A point cloud has no faces; it can be classified and retrieved, not estimated."
+    )
     file_name: str
     file_type: str
     file_size: int = Field(description="Bytes of the file as it was uploaded.")
-    vertex_count: int
+    vertex_count: int = Field(description="Of a point cloud, its points.")
     face_count: int
     bounds: Annotated[list[Coordinates], Field(min_length=2, max_length=2)] = Field(
         description="Smallest and largest x, y, z, in the file's own coordinates."
     )
     watertight: bool
-    content_url: str = Field(description="The mesh as GLB.")
+    content_url: str = Field(description="The mesh or the points as GLB.")
     created_at: Moment
 
     @classmethod
@@ -31,6 +34,7 @@ class MeshOut(OutBody):
         """Write down a row."""
         return cls(
             id=row.id,
+            kind="mesh" if row.face_count else "point_cloud",
             file_name=row.file_name,
             file_type=row.file_type,
             file_size=row.file_size,

@@ -1,4 +1,6 @@
-"""Binary glTF: meshes that share a topology, written in one pass so that a slider moves smoothly; colored scenes."""
+"""Binary glTF: meshes that share a topology, written in one pass so that a slider moves smoothly; colored scenes;
+point clouds.
+"""
 
 import json
 import struct
@@ -14,6 +16,7 @@ _FLOAT: Final = 5126
 _UNSIGNED_INT: Final = 5125
 _ARRAY_BUFFER: Final = 34962
 _ELEMENT_ARRAY_BUFFER: Final = 34963
+_POINTS: Final = 0
 _MATERIAL: Final = {"doubleSided": True, "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8}}
 
 
@@ -58,6 +61,16 @@ def write_colored_glb(meshes: Sequence[ColoredMesh]) -> bytes:
     return parts.file()
 
 
+def write_points_glb(points: Float[np.ndarray, "N 3"]) -> bytes:
+    """Return the GLB file of a point cloud; positions become float32, relative to a node in their middle.
+
+    So a scan in the coordinates of a map, far from the origin, keeps its detail.
+    """
+    parts = _Parts()
+    parts.add_points(points)
+    return parts.file()
+
+
 class _Parts:
     """What a file consists of: the lists of a glTF document, and the pieces of its binary chunk."""
 
@@ -86,6 +99,14 @@ class _Parts:
         named = {} if name is None else {"name": name}
         self._nodes.append({"mesh": len(self._meshes), **named})
         self._meshes.append({"primitives": [{"attributes": attributes, "indices": corners, "material": 0}], **named})
+
+    def add_points(self, points: Float[np.ndarray, "N 3"]) -> None:
+        middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+        positions = np.ascontiguousarray(points - middle, dtype="<f4")
+        bounds = {"min": positions.min(axis=0).tolist(), "max": positions.max(axis=0).tolist()}
+        attributes = {"POSITION": self._add_vectors(positions, bounds)}
+        self._nodes.append({"mesh": len(self._meshes), "translation": middle.tolist()})
+        self._meshes.append({"primitives": [{"attributes": attributes, "mode": _POINTS, "material": 0}]})
 
     def _add_vectors(self, rows: np.ndarray, bounds: dict[str, Any]) -> int:
         return self._add(rows.tobytes(), _ARRAY_BUFFER, _FLOAT, len(rows), "VEC3", bounds)

@@ -18,8 +18,10 @@ from worker_support import Site, now
 from models_store import catalog, claims
 from models_store.jobs import JobState
 from models_store.tables import CollectionRow, RetrievalRow
+from shapewright.distances.surface import uniform_points
 from shapewright.errors import Cancelled, MeshError
-from shapewright.mesh import TriangleMesh
+from shapewright.mesh import PointCloud, TriangleMesh
+from shapewright.mesh.file import MeshReader
 from shapewright.retrieval import CollectionIndex
 from workers.context import JobContext, WorkerProgress
 from workers.runner import Runner
@@ -227,6 +229,39 @@ def test_meshes_are_found_by_class_model_and_mesh(site: Site, network: ExtentCla
         with Image.open(io.BytesIO(site.artifacts.get(str(done.sheet_key)))) as sheet:
             assert sheet.format == "PNG"
             assert sheet.height > rows * 200
+
+
+def upload_scan(site: Site, name: str, sides: tuple[float, float, float]) -> str:
+    points = uniform_points(box(sides), 300, rng=np.random.default_rng(0))
+    data = b"".join(b"%r %r %r\n" % tuple(row) for row in points.tolist())
+    row, _ = catalog.store_mesh(
+        site.database, site.artifacts, data,
+        file_name=name, file_type="xyz", mesh=PointCloud(points), now=now(),
+    )  # fmt: skip
+    return row.id
+
+
+def test_point_clouds_are_indexed_and_asked_for(site: Site, network: ExtentClassifier) -> None:
+    add_classifier(site)
+    inside = upload_scan(site, "long.xyz", (0.2, 0.2, 4.0))
+    row = ask(site, [*upload_all(site), inside])
+    run(site, row.job_id)
+    assert collection(site, row.id).skipped == []
+    assert set(names(retrieve(site, row.id, class_name="rod", evidence="probabilities"))[:3]) == {
+        "long.off", "longer.off", "long.xyz",
+    }  # fmt: skip
+    by_cloud = retrieve(site, row.id, mesh_id=upload_scan(site, "flat.xyz", (2.2, 2.0, 0.2)))
+    assert set(names(by_cloud)[:2]) == {"flat.off", "wide.off"}
+    assert by_cloud.sheet_key is not None
+
+
+def test_the_job_of_a_point_cloud_without_a_surface_says_so(site: Site) -> None:
+    cloud = upload_scan(site, "long.xyz", (0.2, 0.2, 4.0))
+    with closing(MeshReader()) as reader:
+        context = JobContext(None, site.database, site.artifacts, None, None, reader)  # type: ignore[arg-type]
+        assert isinstance(context.load_query(cloud), PointCloud)
+        with pytest.raises(MeshError, match="cloud of 300 points"):
+            context.load_mesh(cloud)
 
 
 def test_a_mesh_that_cannot_be_described_is_said(

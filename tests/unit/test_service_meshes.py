@@ -10,8 +10,8 @@ import pytest
 from service_support import GLB, LiveService, problem, running, service, shared_service, tetrahedron
 
 from models_store.catalog import mesh_id
-from shapewright.mesh import TriangleMesh
-from shapewright.mesh.file import parse_mesh
+from shapewright.mesh import PointCloud, TriangleMesh
+from shapewright.mesh.file import parse_mesh, parse_query
 
 __all__ = ["service", "shared_service"]
 
@@ -42,6 +42,33 @@ def test_every_type_of_file_is_taken(service: LiveService, file_type: str) -> No
     assert parse_mesh(content.content, "glb").bounds.tolist() == mesh["bounds"]
     etag = content.headers["etag"]
     assert service.client.get(mesh["content_url"], headers={"If-None-Match": etag}).status_code == 304
+
+
+SCAN = b"5\n500000 4500000.25 1\n500001 4500000 1\n500000 4500003 1\n500000 4500000 7\n500000 4500000.5 1\n"
+
+
+def test_a_file_without_faces_is_a_point_cloud(service: LiveService) -> None:
+    response = service.upload(SCAN, "scan.PTS")
+    assert response.status_code == 201, response.text
+    cloud = response.json()
+    assert (cloud["kind"], cloud["file_type"], cloud["watertight"]) == ("point_cloud", "pts", False)
+    assert (cloud["vertex_count"], cloud["face_count"]) == (5, 0)
+    assert cloud["bounds"] == [[500000, 4500000, 1], [500001, 4500003, 7]]
+    assert service.client.get("/v1/meshes").json()["items"] == [cloud]
+    shown = parse_query(service.client.get(cloud["content_url"]).content, "glb")
+    assert isinstance(shown, PointCloud)
+    np.testing.assert_allclose(shown.points, np.loadtxt(SCAN.splitlines()[1:]), atol=1e-6)
+
+
+def test_a_point_cloud_is_not_estimated(service: LiveService) -> None:
+    cloud = service.upload(SCAN, "scan.txt").json()["id"]
+    mesh = service.upload(tetrahedron(), "mesh.off").json()["id"]
+    model = service.add_model("box")["id"]
+    told = problem(service.client.post("/v1/estimations", json={"mesh_id": cloud, "model_id": model}), 422, "mesh_id")
+    assert "point cloud" in told["detail"]
+    many = {"mesh_ids": [mesh, cloud], "model_id": model}
+    problem(service.client.post("/v1/collection-estimations", json=many), 422, "mesh_ids[1]")
+    assert service.client.get("/v1/jobs").json()["items"] == []
 
 
 def test_the_same_bytes_are_the_same_mesh(service: LiveService) -> None:
@@ -82,6 +109,9 @@ LINK = (
         (b"OFF\n4 4 0\n" + b"1 1 1\n" * 4 + b"3 0 1 2\n" * 4, "point.off", 422, "area"),
         (tetrahedron(), "wrong.stl", 422, "the content is OFF"),
         (b"PK\x03\x04....", "zipped.obj", 422, "ZIP"),
+        (b"1 2 3\n4 5\n", "short.xyz", 422, "at least 3 numbers"),
+        (b"VERSION .7\nFIELDS x y z\n", "cut.pcd", 422, "the header has no"),
+        (b"ASTM-E57" + bytes(50), "scan.e57", 415, ".pcd"),
         (LINK, "link.gltf", 422, "links to another file"),
         (tetrahedron(), "mesh.exe", 415, ".off"),
         (tetrahedron(), "mesh", 415, ".off"),

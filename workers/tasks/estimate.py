@@ -36,7 +36,7 @@ def estimate(context: JobContext) -> Outcome:
         context.progress, lambda: row.time_limit_s is not None and context.seconds >= row.time_limit_s
     )
     context.progress.report(0.0, "reading the mesh")
-    query = Query(context.load_query(row.mesh_id), units=cast("Unit | None", row.units), up=cast("Axis | None", row.up))
+    query = Query(context.load_mesh(row.mesh_id), units=cast("Unit | None", row.units), up=cast("Axis | None", row.up))
     generators = [compile_model(context.load_model(model_id)) for model_id in model_ids]
     try:
         found = find(query, generators, settings, progress=limit, banks=partial(bank_of, context, settings))

@@ -17,7 +17,7 @@ from workers.stored.classifiers import LoadedClassifier, stored_classifier
 from workers.stored.indexes import load_changing_index, load_index, store_index
 
 if TYPE_CHECKING:
-    from shapewright.mesh import TriangleMesh
+    from shapewright.mesh import PointCloud, TriangleMesh
     from shapewright.retrieval import CollectionIndex, SkippedMesh
 
 log = structlog.get_logger(__name__)
@@ -120,7 +120,7 @@ def _extended(
     return index.taken(list(rows.values())), skipped
 
 
-def _meshes(context: JobContext, mesh_ids: Sequence[str]) -> "Iterator[tuple[str, TriangleMesh | str]]":
+def _meshes(context: JobContext, mesh_ids: Sequence[str]) -> "Iterator[tuple[str, TriangleMesh | PointCloud | str]]":
     for mesh_id in mesh_ids:
         try:
             yield mesh_id, context.load_query(mesh_id)

@@ -125,6 +125,9 @@ export interface paths {
          * Create Mesh
          * @description Upload a mesh: OBJ, OFF, PLY, STL, GLB or self-contained glTF. The same bytes are the same mesh.
          *
+         *     A file without faces is a point cloud, which classifications and retrievals take: any of these but STL, or LAS, LAZ,
+         *     PCD, or text with a point on each line (XYZ, PTS, ASC, CSV, TXT).
+         *
          *     The file is read in a child process with limits; no link in it is followed.
          */
         post: operations["create_mesh"];
@@ -163,7 +166,7 @@ export interface paths {
         };
         /**
          * Get Mesh Content
-         * @description The mesh as it was read, in its own coordinates, as GLB.
+         * @description The mesh as it was read, in its own coordinates, as GLB; a point cloud as points.
          */
         get: operations["get_mesh_content"];
         put?: never;
@@ -1811,7 +1814,7 @@ export interface components {
         };
         /**
          * MeshOut
-         * @description An uploaded mesh.
+         * @description An uploaded mesh or point cloud.
          */
         MeshOut: {
             /**
@@ -1819,6 +1822,12 @@ export interface components {
              * @description SHA-256 of the file's bytes.
              */
             id: string;
+            /**
+             * Kind
+             * @description A point cloud has no faces; it can be classified and retrieved, not estimated.
+             * @enum {string}
+             */
+            kind: "mesh" | "point_cloud";
             /** File Name */
             file_name: string;
             /** File Type */
@@ -1828,7 +1837,10 @@ export interface components {
              * @description Bytes of the file as it was uploaded.
              */
             file_size: number;
-            /** Vertex Count */
+            /**
+             * Vertex Count
+             * @description Of a point cloud, its points.
+             */
             vertex_count: number;
             /** Face Count */
             face_count: number;
@@ -1841,7 +1853,7 @@ export interface components {
             watertight: boolean;
             /**
              * Content Url
-             * @description The mesh as GLB.
+             * @description The mesh or the points as GLB.
              */
             content_url: string;
             /**

@@ -48,7 +48,7 @@ export function DropTarget({ onFile }: { onFile: (file: File) => void }) {
     <div className="drop-veil" aria-hidden="true">
       <div>
         Drop to upload
-        <span>OBJ, OFF, PLY, STL or GLB mesh</span>
+        <span>OBJ, OFF, PLY, STL or GLB mesh; PLY, XYZ, PCD or LAS point cloud</span>
       </div>
     </div>
   ) : null;

@@ -1,5 +1,5 @@
 import type { Estimation, Mesh } from "../api/types";
-import { count, significant } from "../lib/format";
+import { count, meshSize, significant } from "../lib/format";
 import { ClassificationPanel } from "./ClassificationPanel";
 import { EstimationPanel } from "./EstimationPanel";
 
@@ -18,15 +18,16 @@ interface MeshInspectorProps {
 /** What is known about an unknown mesh, and the two questions that can be asked about it. */
 export function MeshInspector(props: MeshInspectorProps) {
   const { mesh, classifierId, onClassifier, foundClass, estimation, estimations, answer, onAnswer } = props;
+  const isCloud = mesh.kind === "point_cloud";
   return (
     <section className="inspector" aria-label="Mesh">
       <div className="inspector-head">
-        <p className="eyebrow">Unknown mesh</p>
+        <p className="eyebrow">{isCloud ? "Unknown point cloud" : "Unknown mesh"}</p>
         <h2 className="file-name">{mesh.file_name}</h2>
         <dl className="facts">
           <div>
             <dt>Size</dt>
-            <dd title={`${count(mesh.vertex_count, "vertex", "vertices")}`}>{count(mesh.face_count, "face")}</dd>
+            <dd title={`${count(mesh.vertex_count, "vertex", "vertices")}`}>{meshSize(mesh)}</dd>
           </div>
           <div>
             <dt>Extent</dt>
@@ -34,19 +35,25 @@ export function MeshInspector(props: MeshInspectorProps) {
           </div>
           <div>
             <dt>Surface</dt>
-            <dd>{mesh.watertight ? "Closed" : "Open"}</dd>
+            <dd>{isCloud ? "None: points" : mesh.watertight ? "Closed" : "Open"}</dd>
           </div>
         </dl>
       </div>
       <ClassificationPanel meshId={mesh.id} classifierId={classifierId} onClassifier={onClassifier} />
-      <EstimationPanel
-        meshId={mesh.id}
-        foundClass={foundClass}
-        estimation={estimation}
-        estimations={estimations}
-        answer={answer}
-        onAnswer={onAnswer}
-      />
+      {isCloud ? (
+        <p className="muted">
+          A point cloud can be classified, and looked up in a collection. Rebuilding needs a mesh with faces.
+        </p>
+      ) : (
+        <EstimationPanel
+          meshId={mesh.id}
+          foundClass={foundClass}
+          estimation={estimation}
+          estimations={estimations}
+          answer={answer}
+          onAnswer={onAnswer}
+        />
+      )}
     </section>
   );
 }

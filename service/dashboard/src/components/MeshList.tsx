@@ -1,6 +1,6 @@
 import { useMeshes } from "../api/queries";
 import type { Mesh } from "../api/types";
-import { count } from "../lib/format";
+import { meshSize } from "../lib/format";
 import { formatRoute } from "../lib/route";
 import { Icon } from "./Icon";
 import { Problem } from "./Problem";
@@ -45,7 +45,7 @@ export function MeshList({ selectedId, onChoose, uploading, uploadError, onDismi
           <span>
             <strong>Drop an unknown mesh here</strong>
             <br />
-            or choose a file: OBJ, OFF, PLY, STL, GLB
+            or choose a file: OBJ, OFF, PLY, STL, GLB; scans: PLY, XYZ, PCD, LAS
           </span>
         </button>
       )}
@@ -75,7 +75,7 @@ function MeshRow({ mesh, selected }: { mesh: Mesh; selected: boolean }) {
     >
       <span className="file-type">{mesh.file_type}</span>
       <span className="mesh-name">{mesh.file_name}</span>
-      <span className="mesh-facts">{count(mesh.face_count, "face")}</span>
+      <span className="mesh-facts">{meshSize(mesh)}</span>
     </a>
   );
 }

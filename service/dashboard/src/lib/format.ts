@@ -1,5 +1,5 @@
 /** Numbers and names as people read them. */
-import type { JobKind, JobState } from "../api/types";
+import type { JobKind, JobState, Mesh } from "../api/types";
 
 /** `glass_with_stem` → `Glass with stem`. */
 export function humanize(name: string): string {
@@ -102,4 +102,9 @@ const STATES: Record<JobState, string> = {
 
 export function jobState(state: JobState): string {
   return STATES[state] ?? humanize(state);
+}
+
+/** What a mesh is made of: `1,200 faces`, of a point cloud `5,000 points`. */
+export function meshSize(mesh: Pick<Mesh, "kind" | "face_count" | "vertex_count">): string {
+  return mesh.kind === "point_cloud" ? count(mesh.vertex_count, "point") : count(mesh.face_count, "face");
 }

@@ -6,8 +6,10 @@ import { Box3, Matrix4, Quaternion, Sphere, Vector3 } from "three";
 import type { DirectionalLight } from "three";
 
 import { CameraRig } from "./CameraRig";
+import { Cloud } from "./Cloud";
 import type { CameraCommands } from "./CameraRig";
 import type { Layer, Placement } from "./layers";
+import { isCloud } from "./loadGlb";
 import type { Vec3 } from "./up";
 import type { Palette } from "./palette";
 import { Surface } from "./Surface";
@@ -137,13 +139,17 @@ function LayerSurface({ layer, palette, showEdges, onDecoded, onError }: LayerSu
   if (!decoded || !layer.visible || layer.opacity <= 0) return null;
   return (
     <group matrix={matrix} matrixAutoUpdate={false}>
-      <Surface
-        geometry={decoded.geometry}
-        color={coloredNode === undefined ? palette.tones[layer.tone] : null}
-        edgeColor={palette.edge}
-        opacity={layer.opacity}
-        showEdges={showEdges}
-      />
+      {isCloud(decoded.geometry) ? (
+        <Cloud geometry={decoded.geometry} color={palette.tones[layer.tone]} opacity={layer.opacity} />
+      ) : (
+        <Surface
+          geometry={decoded.geometry}
+          color={coloredNode === undefined ? palette.tones[layer.tone] : null}
+          edgeColor={palette.edge}
+          opacity={layer.opacity}
+          showEdges={showEdges}
+        />
+      )}
     </group>
   );
 }
