@@ -11,7 +11,6 @@ from typing import Any, Final
 
 import numpy as np
 from jaxtyping import Bool, Float
-from scipy.optimize import minimize
 
 GEOMETRY_WEIGHT: Final = 15.0
 """How much of a log-probability a unit of panorama distance is worth. From 10 to 30 little changes (accuracy on the
@@ -86,6 +85,8 @@ def fit_known_curve(scores: Float[np.ndarray, " M"], is_known: Bool[np.ndarray, 
 
     A small pull towards slope 1 keeps the curve sane where the kinds do not overlap.
     """
+    from scipy.optimize import minimize  # only training fits; loading scipy would double the time to the first answer
+
     weight = np.where(is_known, 0.5 / max(is_known.sum(), 1), 0.5 / max((~is_known).sum(), 1))
     sign = np.where(is_known, 1.0, -1.0)
 

@@ -7,7 +7,6 @@ from typing import Literal
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
 from shapewright.rendering.styles import SCALE_RANGE
 
@@ -22,8 +21,7 @@ def random_views(
     Returns:
         Rotation matrices (N, 3, 3) and scales (N,).
     """
-    rotations = Rotation.random(count, rng=rng).as_matrix().reshape(count, 3, 3)
-    return np.asarray(rotations, dtype=np.float64), rng.uniform(*scale_range, size=count)
+    return _random_rotations(rng, count), rng.uniform(*scale_range, size=count)
 
 
 def spread_views(
@@ -34,8 +32,9 @@ def spread_views(
     Each rotation alone is still uniformly random, and so is each scale.
     """
     directions = even_views(count)
-    rolls = Rotation.from_euler("z", rng.uniform(0.0, 2.0 * np.pi, (count, 1))).as_matrix().reshape(count, 3, 3)
-    whole = Rotation.random(rng=rng).as_matrix()
+    angles_rad = rng.uniform(0.0, 2.0 * np.pi, count)
+    rolls = np.array([_about("z", angle_rad) for angle_rad in angles_rad]).reshape(count, 3, 3)
+    (whole,) = _random_rotations(rng, 1)
     return np.asarray(rolls @ directions @ whole), rng.uniform(*scale_range, size=count)
 
 
@@ -70,6 +69,30 @@ def three_quarter_view(
         azimuth_rad: turn about the upright axis.
         elevation_rad: height of the camera above the horizon.
     """
-    around = Rotation.from_euler("y", -azimuth_rad) * Rotation.from_euler("x", 0.0)
-    upright = Rotation.from_euler("x", -np.pi / 2) if up == "z" else Rotation.identity()
-    return np.asarray((Rotation.from_euler("x", elevation_rad) * around * upright).as_matrix())
+    upright = _about("x", -np.pi / 2) if up == "z" else np.eye(3)
+    return np.asarray(_about("x", elevation_rad) @ _about("y", -azimuth_rad) @ upright)
+
+
+def _random_rotations(rng: np.random.Generator, count: int) -> Float[np.ndarray, "{count} 3 3"]:
+    """Draw rotation matrices uniformly, by normal quaternions.
+
+    The numbers are those of ``scipy.spatial.transform.Rotation.random``, without the time that loading scipy takes.
+    """
+    quaternions = rng.normal(size=(count, 4))
+    x, y, z, w = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
+    rows = [
+        [x * x - y * y - z * z + w * w, 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), -x * x + y * y - z * z + w * w, 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), -x * x - y * y + z * z + w * w],
+    ]
+    return np.moveaxis(np.array(rows), 2, 0)
+
+
+def _about(axis: Literal["x", "y", "z"], angle_rad: float) -> Float[np.ndarray, "3 3"]:
+    """Rotate about a coordinate axis, counter-clockwise seen from its positive end."""
+    first, second = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis]
+    matrix = np.eye(3)
+    matrix[[first, second], [first, second]] = np.cos(angle_rad)
+    matrix[second, first] = np.sin(angle_rad)
+    matrix[first, second] = -np.sin(angle_rad)
+    return matrix

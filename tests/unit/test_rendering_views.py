@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from shapewright.rendering import even_views
-from shapewright.rendering.views import spread_views
+from shapewright.rendering.views import random_views, spread_views, three_quarter_view
 
 
 def smallest_angle(rotations: np.ndarray) -> float:
@@ -51,3 +52,17 @@ def test_spread_views_repeat_with_the_generator() -> None:
 def test_even_views_are_the_same_each_time(count: int) -> None:
     assert even_views(count).shape == (count, 3, 3)
     assert np.array_equal(even_views(count), even_views(count))
+
+
+@pytest.mark.parametrize("count", [0, 1, 7])
+def test_random_views_are_the_rotations_that_scipy_draws(count: int) -> None:
+    rotations, _ = random_views(np.random.default_rng(5), count)
+    drawn = Rotation.random(count, rng=np.random.default_rng(5)).as_matrix().reshape(count, 3, 3)
+    assert np.allclose(rotations, drawn, atol=1e-12)
+
+
+def test_the_three_quarter_view_turns_the_object_then_tips_it_towards_the_camera() -> None:
+    turned = Rotation.from_euler("yx", [-0.3, 0.2]).as_matrix()
+    assert np.allclose(three_quarter_view("y", azimuth_rad=0.3, elevation_rad=0.2), turned)
+    upright = Rotation.from_euler("x", -np.pi / 2).as_matrix()
+    assert np.allclose(three_quarter_view("z", azimuth_rad=0.3, elevation_rad=0.2), turned @ upright)
