@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from shapewright.errors import Cancelled, ShapewrightError
-from shapewright.estimation.estimate import estimate
+from shapewright.estimation.estimating import estimate
 from shapewright.estimation.query import Axis, Query, Unit
 from shapewright.estimation.result import EstimationCancelled
 from shapewright.estimation.settings import EstimationSettings

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from shapewright.estimation.estimate import estimate
+from shapewright.estimation.estimating import estimate
 from shapewright.estimation.settings import EstimationSettings
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling import CompiledModel, Recorder, compile_model, group, when
