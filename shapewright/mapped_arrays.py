@@ -1,4 +1,4 @@
-"""Arrays in one uncompressed ``.npz`` file, each placed so that it can be mapped into memory.
+"""Arrays in one ``.npz`` file, each placed so that it can be mapped into memory unless the file is compressed.
 
 numpy reads such a file like any other; its first member, ``header``, is a JSON document that says what it holds.
 """
@@ -7,6 +7,7 @@ import io
 import json
 import os
 import zipfile
+import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -17,8 +18,16 @@ _ALIGNMENT: Final = 64
 _HEADER: Final = "header"
 
 
-def write_arrays(path: str | Path, header: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> None:
+def write_arrays(
+    path: str | Path, header: Mapping[str, Any], arrays: Mapping[str, np.ndarray], *, compressed: bool = False
+) -> None:
     """Write a header and arrays, completely or not at all; the data of each begin at a multiple of 64 bytes.
+
+    Args:
+        path: the file.
+        header: JSON values.
+        arrays: by name.
+        compressed: for files that are small rather than quick to open; their arrays cannot be mapped into memory.
 
     Raises:
         OSError: the file cannot be written.
@@ -27,7 +36,8 @@ def write_arrays(path: str | Path, header: Mapping[str, Any], arrays: Mapping[st
     text = np.frombuffer(json.dumps(header).encode(), dtype=np.uint8)
     partial = target.with_name(f"{target.name}.partial{os.getpid()}")
     try:
-        with zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED, allowZip64=True) as archive:
+        method = zipfile.ZIP_DEFLATED if compressed else zipfile.ZIP_STORED
+        with zipfile.ZipFile(partial, "w", method, allowZip64=True, compresslevel=9) as archive:
             for name, array in {_HEADER: text, **arrays}.items():
                 _write_aligned(archive, f"{name}.npy", array)
         partial.replace(target)
@@ -68,7 +78,7 @@ def read_arrays(path: str | Path, names: Sequence[str], *, memory_map: bool = Tr
         raise ValueError(_reason(error)) from error
 
 
-_DAMAGE: Final = (zipfile.BadZipFile, KeyError, ValueError, TypeError, EOFError)
+_DAMAGE: Final = (zipfile.BadZipFile, zlib.error, KeyError, ValueError, TypeError, EOFError)
 
 
 def _reason(error: Exception) -> str:
@@ -84,6 +94,7 @@ def _write_aligned(archive: zipfile.ZipFile, name: str, array: Any) -> None:
     # 30 bytes of local header and the name precede the extra field; force_zip64 adds its own 20 bytes
     begin = archive.fp.tell() + 30 + len(name) + 20 + 4 + len(npy_header)  # type: ignore[union-attr]
     padding = -begin % _ALIGNMENT
+    info.compress_type = archive.compression
     info.extra = b"\x57\x53" + padding.to_bytes(2, "little") + bytes(padding)
     with archive.open(info, "w", force_zip64=True) as member:
         member.write(npy_header)

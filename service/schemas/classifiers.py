@@ -33,6 +33,9 @@ class TrainingSettingsIn(InBody):
     exemplars: bool | None = Field(
         default=None, description="Whether the geometry of the variations is kept, as evidence beside the pictures."
     )
+    exemplars_per_class: Annotated[int, Field(ge=0, le=100_000)] | None = Field(
+        default=None, description="Keep the geometry of so many variations, those that represent the rest best; 0: all."
+    )
     vary: bool | None = Field(default=None, description="false: learn from base models alone.")
     held_out: Annotated[float, Field(gt=0, lt=1)] | None = Field(
         default=None, description="Share of the variations that measure the accuracy."

@@ -4,13 +4,14 @@ They are evidence beside the pictures: how near does a mesh come to some variati
 geometry that pictures blur, and where a match is found its parameter values are known, too.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 from jaxtyping import Float, Float32, Int
 
+from shapewright.classification.quantized import quantize, restore
 from shapewright.classification.series import SERIES, series_generators, series_values
 from shapewright.distances.descriptor_files import OutdatedFileError, descriptor_header, read_descriptor_header
 from shapewright.distances.panorama import DESCRIPTOR_SIZE, PanoramaDescriptor, panorama_distances
@@ -19,7 +20,7 @@ from shapewright.estimation.generator import InstanceGenerator
 from shapewright.mapped_arrays import read_arrays, write_arrays
 
 FORMAT: Final = "shapewright-exemplars"
-_VERSION: Final = 1
+_VERSION: Final = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +58,16 @@ class Exemplars:
 
     def __len__(self) -> int:
         return len(self.classes)
+
+    def taken(self, rows: Int[np.ndarray, " K"]) -> "Exemplars":
+        """Return the exemplars of these rows alone, in this order."""
+        return replace(
+            self,
+            classes=self.classes[rows],
+            models=self.models[rows],
+            numbers=self.numbers[rows],
+            descriptors=self.descriptors[rows],
+        )
 
     def distances(self, descriptor: PanoramaDescriptor) -> Float[np.ndarray, " M"]:
         """Panorama distance of a mesh to every exemplar."""
@@ -97,7 +108,7 @@ class Exemplars:
         return np.asarray(series_values(generator, rng, SERIES)[index])
 
     def save(self, path: str | Path) -> None:
-        """Write one ``.npz`` file; descriptors in half precision, which changes distances by less than 0.001.
+        """Write one compressed ``.npz`` file; its rounded descriptors change distances by 0.0006 on average.
 
         Raises:
             OSError: the file cannot be written.
@@ -108,13 +119,15 @@ class Exemplars:
             "seed": self.seed,
             "subdivision_steps": self.subdivision_steps,
         }
+        levels, largest = quantize(self.descriptors)
         arrays: dict[str, np.ndarray] = {
             "classes": self.classes.astype(np.int32),
             "models": self.models.astype(np.int32),
             "numbers": self.numbers.astype(np.int32),
-            "descriptors": self.descriptors.astype(np.float16),
+            "levels": levels,
+            "largest": largest,
         }
-        write_arrays(path, descriptor_header(FORMAT, _VERSION, rest), arrays)
+        write_arrays(path, descriptor_header(FORMAT, _VERSION, rest), arrays, compressed=True)
 
     @classmethod
     def load(cls, path: str | Path) -> "Exemplars":
@@ -126,8 +139,8 @@ class Exemplars:
         where = Path(path).name
         try:
             header = read_descriptor_header(path, FORMAT, _VERSION)
-            classes, models, numbers, descriptors = read_arrays(
-                path, ["classes", "models", "numbers", "descriptors"], memory_map=False
+            classes, models, numbers, levels, largest = read_arrays(
+                path, ["classes", "models", "numbers", "levels", "largest"], memory_map=False
             )
             return cls(
                 class_names=tuple(str(name) for name in header["class_names"]),
@@ -137,7 +150,7 @@ class Exemplars:
                 classes=classes,
                 models=models,
                 numbers=numbers,
-                descriptors=descriptors.astype(np.float32),
+                descriptors=restore(levels, largest),
             )
         except OSError as error:
             raise ClassifierError(f"cannot be read: {error.strerror}", where=where) from error

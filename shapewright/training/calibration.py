@@ -217,6 +217,7 @@ def _distances_without_own_model(
         distances = exemplars.distances(PanoramaDescriptor.from_array(descriptors[mesh]))
         own = int(data.sources[mesh]) if data.labels[mesh] < data.class_count else None
         if own is not None:
-            distances[mesh] = np.inf  # the exemplars are the first rows of all meshes: this is itself
+            number = mesh - int(np.argmax(data.sources == own))
+            distances[(exemplars.models == own) & (exemplars.numbers == number)] = np.inf  # this is itself
         near[row], _ = exemplars.nearest(distances, without_model=own)
     return near

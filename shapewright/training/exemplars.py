@@ -1,31 +1,64 @@
 """Exemplars of what a classifier learned from."""
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Float32, Int
 
 from shapewright.classification.exemplars import Exemplars
-from shapewright.training.dataset import Plan
+from shapewright.distances.panorama import PanoramaDescriptor, panorama_distances
+from shapewright.training.dataset import Plan, evenly
+from shapewright.training.settings import TrainingSettings
 
 
-def exemplars_of(plan: Plan, descriptors: Float[np.ndarray, "A D"], seed: int, subdivision_steps: int) -> Exemplars:
+def exemplars_of(plan: Plan, descriptors: Float[np.ndarray, "A D"], settings: TrainingSettings) -> Exemplars:
     """Return the exemplars of a plan's classes.
 
     Args:
         plan: the sources, and how many meshes each one gave.
         descriptors: of all meshes of the plan, see :func:`shapewright.training.dataset.load_descriptors`.
-        seed: of the variations.
-        subdivision_steps: of the variations.
+        settings: of the training.
     """
     known = [share for share in plan.shares if share.label < len(plan.class_names)]
     digests = tuple(share.source.digest for share in known)
     counts = [share.count for share in known]
-    return Exemplars(
+    every = Exemplars(
         class_names=plan.class_names,
         digests=digests,
-        seed=seed,
-        subdivision_steps=subdivision_steps,
+        seed=settings.seed,
+        subdivision_steps=settings.subdivision_steps,
         classes=np.repeat([share.label for share in known], counts),
         models=np.repeat(np.arange(len(known)), counts),
         numbers=np.concatenate([np.arange(count) for count in counts]),
         descriptors=descriptors[: sum(counts)],
     )
+    return every if settings.exemplars_per_class == 0 else representatives(every, settings.exemplars_per_class)
+
+
+def representatives(exemplars: Exemplars, per_class: int) -> Exemplars:
+    """Keep the exemplars that represent the others best.
+
+    Args:
+        exemplars: all of them.
+        per_class: how many are kept of each class, shared by its models; at least one of each model.
+    """
+    kept = []
+    for number in range(len(exemplars.class_names)):
+        models = np.unique(exemplars.models[exemplars.classes == number])
+        for model, count in zip(models, evenly(per_class, len(models)), strict=True):
+            rows = np.flatnonzero(exemplars.models == model)
+            kept.append(rows[np.sort(central_rows(exemplars.descriptors[rows], max(count, 1)))])
+    return exemplars.taken(np.concatenate(kept))
+
+
+def central_rows(descriptors: Float32[np.ndarray, "M D"], count: int) -> Int[np.ndarray, " K"]:
+    """Choose rows one by one, each the one that brings all rows nearest to a chosen one in the sum of distances."""
+    if count >= len(descriptors):
+        return np.arange(len(descriptors))
+    distances = np.stack([panorama_distances(PanoramaDescriptor(row), descriptors) for row in descriptors])
+    nearest = np.full(len(descriptors), np.inf)
+    chosen: list[int] = []
+    for _ in range(count):
+        sums = np.minimum(distances, nearest).sum(axis=1)
+        sums[chosen] = np.inf
+        chosen.append(int(np.argmin(sums)))
+        nearest = np.minimum(nearest, distances[chosen[-1]])
+    return np.array(chosen)

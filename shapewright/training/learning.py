@@ -116,7 +116,7 @@ def learn(
     descriptors = exemplars = None
     if settings.exemplars and settings.vary:
         descriptors = load_descriptors(plan, settings, store)
-        exemplars = exemplars_of(plan, descriptors, settings.seed, settings.subdivision_steps)
+        exemplars = exemplars_of(plan, descriptors, settings)
     head = train_head(data, settings, PartialProgress(progress, 0.05, 0.6))
     calibration = calibrate(
         plan,

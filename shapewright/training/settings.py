@@ -25,6 +25,7 @@ class TrainingSettings:
             together if there are eight of them or more, fewer if not. 0 learns to tell classes apart, but not what
             is ``unknown``.
         exemplars: whether the variations' panorama descriptors are kept, as evidence beside the pictures.
+        exemplars_per_class: keep so many of them, those that represent the rest best; 0 keeps all.
         vary: whether variations vary; without, all pictures show base models (the paper's baseline, section 4.2).
         held_out: share of each class's *variations* (not pictures) kept for early stopping and calibration.
         epochs: passes over the features at most.
@@ -49,6 +50,7 @@ class TrainingSettings:
     scale_range: tuple[float, float] = (0.7, 1.0)
     negatives: int = 500
     exemplars: bool = True
+    exemplars_per_class: int = 0
     vary: bool = True
     held_out: float = 0.1
     epochs: int = 40
@@ -78,6 +80,7 @@ class TrainingSettings:
                 "two positive numbers in order",
             ),
             "negatives": (self.negatives >= 0, "not negative"),
+            "exemplars_per_class": (self.exemplars_per_class >= 0, "not negative"),
             "held_out": (0 < self.held_out < 1, "between 0 and 1"),
             "epochs": (self.epochs >= 1, "at least 1"),
             "patience": (self.patience >= 1, "at least 1"),

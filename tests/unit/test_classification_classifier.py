@@ -113,7 +113,7 @@ def test_exemplars_are_found_beside_the_file(trained, with_geometry, tmp_path):
     assert len(loaded.exemplars) == len(trained.exemplars)
     mesh = simple_shapes.stool()
     expected = with_geometry.classify(mesh, views=2).distances
-    assert loaded.classify(mesh, views=2).distances == pytest.approx(expected, abs=1e-3)
+    assert loaded.classify(mesh, views=2).distances == pytest.approx(expected, abs=0.01)
     exemplars_file(path).write_bytes(b"nothing of use")
     with pytest.raises(ClassifierError):
         load_classifier(path)
@@ -254,7 +254,7 @@ def test_wrong_pictures_and_views_are_refused(pictures_alone):
     assert caught.value.where == "views"
 
 
-def test_classifying_imports_neither_torch_nor_onnx(trained, tmp_path):
+def test_classifying_imports_nothing_that_only_learning_and_estimating_need(trained, tmp_path):
     path = tmp_path / "classifier.onnx"
     path.write_bytes(trained.onnx)
     trained.exemplars.save(exemplars_file(path))
@@ -267,7 +267,9 @@ mesh = TriangleMesh(np.eye(4, 3), np.array([[0, 1, 2], [0, 1, 3], [1, 2, 3], [0,
 answer = load_classifier({str(path)!r}).classify(mesh, views=2)
 assert answer.distances is not None
 print(answer.class_name)
-assert not {{"torch", "onnx", "shapewright.training"}} & set(sys.modules)
+others = {{"torch", "onnx", "trimesh", "scipy.spatial", "scipy.sparse", "scipy.optimize"}}
+ours = {{"shapewright.training", "shapewright.modeling.compiled", "shapewright.estimation.estimating"}}
+assert not (others | ours) & set(sys.modules)
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

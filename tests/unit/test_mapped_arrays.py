@@ -28,6 +28,19 @@ def test_what_is_written_is_read_mapped_or_not_and_by_numpy(tmp_path: Path) -> N
     assert [item.name for item in tmp_path.iterdir()] == [path.name]
 
 
+def test_a_compressed_file_is_smaller_and_reads_the_same(tmp_path: Path) -> None:
+    path, plain = tmp_path / "some.npz", tmp_path / "plain.npz"
+    arrays = {**ARRAYS, "even": np.zeros((100, 10))}
+    write_arrays(path, {"format": "test"}, arrays, compressed=True)
+    write_arrays(plain, {"format": "test"}, arrays)
+    assert path.stat().st_size < plain.stat().st_size - 7000
+    assert read_header(path) == {"format": "test"}
+    for read, array in zip(read_arrays(path, list(arrays), memory_map=False), arrays.values(), strict=True):
+        np.testing.assert_array_equal(read, array)
+    with pytest.raises(ValueError, match="compressed"):
+        read_arrays(path, ("rows",))
+
+
 def test_what_cannot_be_read_is_said(tmp_path: Path) -> None:
     path = tmp_path / "some.npz"
     write_arrays(path, {}, ARRAYS)

@@ -2591,6 +2591,11 @@ export interface components {
              */
             exemplars?: boolean | null;
             /**
+             * Exemplars Per Class
+             * @description Keep the geometry of so many variations, those that represent the rest best; 0: all.
+             */
+            exemplars_per_class?: number | null;
+            /**
              * Vary
              * @description false: learn from base models alone.
              */
