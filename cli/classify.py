@@ -2,19 +2,21 @@
 
 import time
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from cli.console import AsJson, print_json, shown_progress, stdout
-from cli.evaluation_options import Jobs, threads
+from cli.evaluation_options import ClassifierFile, Jobs, threads
 from cli.picture import save_picture
-from cli.sources import by_digest, find_meshes, load_class
+from cli.sources import by_digest, chosen_classifier, classifier_line, classifier_name, find_meshes, load_class
 from models_store.library.shipped import list_classes
 from shapewright.errors import MeshError, MeshFileError
 
 if TYPE_CHECKING:
+    from shapewright.classification import Classifier
     from shapewright.modeling import CompiledModel
 
 READERS = 4
@@ -28,9 +30,7 @@ def classify(
             metavar="FOLDER|MESH...", help="Files of meshes or point clouds, or folders with some.", show_default=False
         ),
     ],
-    classifier: Annotated[
-        Path, typer.Option("--classifier", "-c", help="The .onnx file of `shapewright train`.", show_default=False)
-    ],
+    classifier: ClassifierFile = None,
     views: Annotated[int, typer.Option(min=1, max=1000, help="Pictures taken of each mesh.")] = 10,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random views.")] = 0,
     fit: Annotated[
@@ -46,33 +46,37 @@ def classify(
 ) -> None:
     """Tell the class of one or more meshes or point clouds, with probabilities, or that it is unknown.
 
-    Geometry counts beside the pictures where the exemplars that `shapewright train` wrote lie beside the classifier.
-    Of several meshes those that cannot be used are listed with the reason. A file without faces is a point cloud: PLY,
-    OBJ, OFF, LAS, LAZ, PCD, XYZ, PTS; of a folder, not ASC, CSV and TXT, which have to be named.
+    The classifier that ships knows ten classes; --classifier names one of `shapewright train`. Geometry counts beside
+    the pictures where the exemplars that training wrote lie beside it. Of several meshes those that cannot be used are
+    listed with the reason. A file without faces is a point cloud: PLY, OBJ, OFF, LAS, LAZ, PCD, XYZ, PTS; of a folder,
+    not ASC, CSV and TXT, which have to be named.
 
     Examples:
 
-      [bold]shapewright classify query.off -c classifier.onnx[/]
-      [bold]shapewright classify scan.pcd -c classifier.onnx[/]
-      [bold]shapewright classify my-meshes more/*.obj -c classifier.onnx --json[/]
-      [bold]shapewright classify query.off -c classifier.onnx --fit --pictures seen[/]
+      [bold]shapewright classify query.off[/]
+      [bold]shapewright classify scan.pcd[/]
+      [bold]shapewright classify my-meshes more/*.obj --json[/]
+      [bold]shapewright classify query.off -c mine.onnx --fit --pictures seen[/]
     """
     import numpy as np
 
-    from shapewright.classification import load_classifier
     from shapewright.mesh.file import load_queries
-    from shapewright.rendering import compose_grid
 
     files = find_meshes(sources, with_clouds=True)
-    network = load_classifier(classifier)
-    models = _shipped(network.class_names) if fit else None
+    classifier_file = chosen_classifier(classifier)
     results: list[dict[str, Any]] = []
     skipped: dict[str, MeshFileError] = {}
     started_s = time.monotonic()
-    with threads(jobs) as used, shown_progress("classifying") as progress:
+    with (
+        threads(jobs) as used,
+        shown_progress("classifying") as progress,
+        ThreadPoolExecutor(1) as pool,
+    ):
+        loading = pool.submit(_loaded, classifier_file, fit=fit)  # while a child process reads the first mesh
         read = load_queries(files, jobs=min(used, READERS))
         for number, (file, query) in enumerate(zip(files, read, strict=True)):
             progress.report(number / len(files), file.name)
+            network, models = loading.result()
             mesh_started_s = time.monotonic()
             try:
                 if isinstance(query, MeshFileError):
@@ -85,6 +89,8 @@ def classify(
             picture = None
             if pictures is not None:
                 picture = pictures / f"{number + 1:0{len(str(len(files)))}d}-{file.stem}.png"
+                from shapewright.rendering import compose_grid
+
                 pictures.mkdir(parents=True, exist_ok=True)
                 save_picture(compose_grid(found.images), picture)
             results.append(
@@ -97,7 +103,7 @@ def classify(
     if as_json:
         print_json(
             {
-                "classifier": str(classifier),
+                "classifier": classifier_name(classifier),
                 "views": views,
                 "class_names": list(network.class_names),
                 "results": results,
@@ -108,6 +114,21 @@ def classify(
         )
         return
     _print(results, skipped)
+    typer.echo(classifier_line(classifier))
+
+
+def _loaded(classifier: Path, *, fit: bool) -> "tuple[Classifier, dict[str, CompiledModel] | None]":
+    """Load a classifier with the compiled kernels that it needs, and for fits the shipped models of its classes."""
+    import numpy as np
+
+    from shapewright.classification import load_classifier
+    from shapewright.distances.panorama import panorama_descriptor
+
+    network = load_classifier(classifier)
+    if network.exemplars is not None:  # kernels are loaded when first called
+        corner, faces = np.eye(4, 3), np.array([[0, 1, 2], [0, 1, 3], [1, 2, 3], [0, 2, 3]])
+        network.exemplars.distances(panorama_descriptor(corner, faces))
+    return network, _shipped(network.class_names) if fit else None
 
 
 def _shipped(class_names: Sequence[str]) -> "dict[str, CompiledModel]":

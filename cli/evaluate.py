@@ -44,7 +44,7 @@ app = typer.Typer(rich_markup_mode="rich", no_args_is_help=True)
 
         Examples:
 
-          [bold]shapewright evaluate classification --dataset DIR[/]                trains, if need be
+          [bold]shapewright evaluate classification --dataset DIR[/]                the classifier that ships
           [bold]shapewright evaluate retrieval --dataset DIR -c mine.onnx[/]        a classifier of yours
           [bold]shapewright evaluate estimation --dataset DIR --report fits.html[/]   queries and fits side by side
           [bold]shapewright evaluate robustness --dataset DIR --limit 50[/]         corrupted meshes

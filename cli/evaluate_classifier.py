@@ -14,6 +14,7 @@ from cli.console import AsJson, print_json, shown_progress, stdout
 from cli.evaluation_options import (
     CacheFolder,
     Classes,
+    ClassifierFile,
     DatasetFolder,
     Jobs,
     Limit,
@@ -23,7 +24,16 @@ from cli.evaluation_options import (
     threads,
 )
 from cli.learning import kept_classifier
-from cli.sources import by_digest, load_class, load_classes, load_negatives, read_object
+from cli.sources import (
+    by_digest,
+    chosen_classifier,
+    classifier_line,
+    classifier_name,
+    load_class,
+    load_classes,
+    load_negatives,
+    read_object,
+)
 from models_store.library.shipped import list_classes, list_further_classes
 from shapewright.errors import EvaluationError
 from shapewright.progress import PartialProgress, Progress
@@ -37,14 +47,12 @@ if TYPE_CHECKING:
     from shapewright.modeling import CompiledModel
     from shapewright.training import TrainingSettings
 
-ClassifierFile = Annotated[
-    Path | None,
+Train = Annotated[
+    bool,
     typer.Option(
-        "--classifier",
-        "-c",
-        help="The .onnx file of `shapewright train` (default: one is trained on the shipped classes of the dataset, "
-        "and kept in the cache).",
-        show_default=False,
+        "--train",
+        help="Train a classifier on the shipped classes of the dataset, and keep it in the cache, instead of taking "
+        "the one that ships; --settings does so, too.",
     ),
 ]
 SettingsFile = Annotated[
@@ -102,6 +110,7 @@ def classification(
     fit: Annotated[
         bool, typer.Option("--fit", help="Classify with a short fit of the likeliest classes, too.")
     ] = False,
+    train: Train = False,
     settings_file: SettingsFile = None,
     seed: Seed = 0,
     jobs: Jobs = None,
@@ -111,18 +120,20 @@ def classification(
     """Tell how many meshes of a dataset get their class, and how well others are told from them.
 
     Meshes of classes that the classifier does not know count as `other`. The figures are given for all evidence and
-    for the pictures alone. Without --classifier one is trained, with --seed, on the shipped models of the dataset's
+    for the pictures alone. With --train a classifier is trained, with --seed, on the shipped models of the dataset's
     classes.
 
     Examples:
 
       [bold]shapewright evaluate classification --dataset DIR --report classified.html[/]
       [bold]shapewright evaluate classification --dataset DIR -c classifier.onnx --json[/]
-      [bold]shapewright evaluate classification --dataset DIR --no-baselines --seed 1[/]
+      [bold]shapewright evaluate classification --dataset DIR --train --no-baselines --seed 1[/]
     """
     from shapewright.evaluation.classification_figures import unknown_figures
 
-    options = Options(dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache, baselines, fit)
+    options = Options(
+        dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache, baselines, train=train, fit=fit
+    )
     with _evaluated(options, report) as (done, progress):
         figures = done.classified
         unknown = unknown_figures(done.dataset)
@@ -161,7 +172,7 @@ def classification(
         known = "" if one.auroc_known is None else f", known against other {one.auroc_known:.3f} (AUROC)"
         typer.echo(f"{_TITLES[name]}: {one.accuracy:.1%} of {one.n} right{known}")
     typer.echo(f"a mesh takes {document['seconds_per_mesh_median'] * 1e3:.0f} ms (median)")
-    _say_skipped(done, report)
+    _say_rest(options, done, report)
 
 
 def retrieval(
@@ -172,6 +183,7 @@ def retrieval(
     classes: Classes = None,
     views: Views = 10,
     baselines: Baselines = True,
+    train: Train = False,
     settings_file: SettingsFile = None,
     seed: Seed = 0,
     jobs: Jobs = None,
@@ -189,7 +201,9 @@ def retrieval(
       [bold]shapewright evaluate retrieval --dataset DIR --report retrieved.html[/]
       [bold]shapewright evaluate retrieval --dataset DIR -c classifier.onnx --json[/]
     """
-    options = Options(dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache, baselines)
+    options = Options(
+        dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache, baselines, train=train
+    )
     with _evaluated(options, report) as (done, progress):
         measured = done.ranked
         if not measured:
@@ -220,7 +234,7 @@ def retrieval(
     stdout().print(table)
     for name, (found, _) in measured.items():
         typer.echo(f"{_TITLES[name]}: mean average precision {found.average_precision:.3f}")
-    _say_skipped(done, report)
+    _say_rest(options, done, report)
 
 
 _TITLES = {
@@ -248,7 +262,13 @@ class Options:
     jobs: int | None
     cache: Path | None
     baselines: bool
+    train: bool = False
     fit: bool = False
+
+    @property
+    def trains(self) -> bool:
+        """Whether the classifier is trained, instead of loaded."""
+        return self.classifier is None and (self.train or self.settings_file is not None)
 
 
 @contextmanager
@@ -268,8 +288,8 @@ def _evaluated(options: Options, report: Path | None) -> Iterator[tuple[Evaluate
     with threads(options.jobs) as used, shown_progress("evaluating") as progress:
         training = PartialProgress(progress, 0.0, _TRAINING_SHARE)
         learned: Mapping[str, Sequence[CompiledModel]] | None
-        if options.classifier is not None:
-            network = load_classifier(options.classifier)
+        if not options.trains:
+            network = load_classifier(chosen_classifier(options.classifier))
             learned = _shipped(network.class_names)
             settings = settings or TrainingSettings.from_dict(network.metadata["settings"])
         else:
@@ -339,6 +359,7 @@ def _common(options: Options, done: Evaluated, report: Path | None) -> dict[str,
     fitted = [one.fitted_seconds for one in done.dataset.judged if one.fitted_seconds is not None]
     return {
         "dataset": str(options.dataset),
+        "classifier": "trained" if options.trains else classifier_name(options.classifier),
         "class_names": list(done.dataset.class_names),
         "views": options.views,
         "seed": options.seed,
@@ -368,7 +389,9 @@ def _write_report(report: Path | None, done: Evaluated, progress: Progress) -> N
     write_whole(report, page.encode())
 
 
-def _say_skipped(done: Evaluated, report: Path | None) -> None:
+def _say_rest(options: Options, done: Evaluated, report: Path | None) -> None:
+    if not options.trains:
+        typer.echo(classifier_line(options.classifier))
     for skipped in done.dataset.skipped:
         typer.echo(f"skipped {skipped.file}: {skipped.reason}", err=True)
     if report is not None:

@@ -33,6 +33,15 @@ Jobs = Annotated[
         min=1, max=256, help="Threads and processes (default: as many as there are cores).", show_default=False
     ),
 ]
+ClassifierFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--classifier",
+        "-c",
+        help="The .onnx file of `shapewright train` (default: the classifier that ships).",
+        show_default=False,
+    ),
+]
 CacheFolder = Annotated[
     Path | None,
     typer.Option(

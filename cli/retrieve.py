@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cli.console import AsJson, print_json, shown_progress, stdout
-from cli.evaluation_options import Jobs, cache_folder, threads
+from cli.evaluation_options import ClassifierFile, Jobs, cache_folder, threads
 from cli.kept_index import IndexedFiles, index_files
-from cli.sources import find_meshes, load_class, load_compiled
+from cli.sources import chosen_classifier, classifier_line, classifier_name, find_meshes, load_class, load_compiled
 from shapewright.errors import ClassifierError, MeshFileError, ModelError, RenderingError
 from shapewright.progress import PartialProgress, Progress
 
@@ -39,9 +39,7 @@ def retrieve(
             metavar="FOLDER|MESH...", help="Files of meshes or point clouds, or folders with some.", show_default=False
         ),
     ],
-    classifier: Annotated[
-        Path, typer.Option("--classifier", "-c", help="The .onnx file of `shapewright train`.", show_default=False)
-    ],
+    classifier: ClassifierFile = None,
     class_name: Annotated[
         str | None, typer.Option("--class", help="Find meshes of this class.", show_default=False)
     ] = None,
@@ -94,8 +92,8 @@ def retrieve(
 
     Examples:
 
-      [bold]shapewright retrieve my-meshes -c classifier.onnx --class sword --contact-sheet swords.png[/]
-      [bold]shapewright retrieve my-meshes -c classifier.onnx --model sword_katana --evidence panorama[/]
+      [bold]shapewright retrieve my-meshes --class sword --contact-sheet swords.png[/]
+      [bold]shapewright retrieve my-meshes --model sword_katana --evidence panorama[/]
       [bold]shapewright retrieve my-meshes -c classifier.onnx --mesh this.off --limit 5 --json[/]
     """
     if sum(wanted is not None for wanted in (class_name, model, mesh)) != 1:
@@ -110,9 +108,10 @@ def retrieve(
     started_s = time.monotonic()
     files = find_meshes(sources, with_clouds=True)
     queried = [] if mesh is None else find_meshes([mesh])
-    network = load_classifier(classifier)
-    beside = exemplars_file(classifier)
-    digest = files_digest(classifier.read_bytes(), beside if beside.is_file() else None)
+    classifier_file = chosen_classifier(classifier)
+    network = load_classifier(classifier_file)
+    beside = exemplars_file(classifier_file)
+    digest = files_digest(classifier_file.read_bytes(), beside if beside.is_file() else None)
     models = _models(class_name, model, network.class_names, chosen)
     with threads(jobs) as used, shown_progress("retrieving") as progress:
         indexed = index_files(
@@ -142,7 +141,7 @@ def retrieve(
     if as_json:
         print_json(
             {
-                "classifier": str(classifier),
+                "classifier": classifier_name(classifier),
                 "query": {"class": class_name, "model": model, "mesh": mesh and str(mesh)},
                 "evidence": chosen.value,
                 "n": len(ranked),
@@ -156,6 +155,7 @@ def retrieve(
         )
         return
     _print(shown, len(ranked), indexed)
+    typer.echo(classifier_line(classifier))
     if sheet is not None:
         typer.echo(str(sheet))
 

@@ -88,6 +88,29 @@ def load_negatives(class_names: Iterable[str]) -> "list[CompiledModel]":
     return [load_compiled(name) for other in list_further_classes() if other not in known for name in classes[other]]
 
 
+def chosen_classifier(named: Path | None) -> Path:
+    """Return the file of the classifier that was named, or of the one that ships.
+
+    Raises:
+        ClassifierError: none was named, and none ships with this installation.
+    """
+    if named is not None:
+        return named
+    from shapewright.classification import ready_classifier_file
+
+    return ready_classifier_file()
+
+
+def classifier_name(named: Path | None) -> str:
+    """Return what a classifier is called in JSON documents: its file, or ``ready`` for the one that ships."""
+    return "ready" if named is None else str(named)
+
+
+def classifier_line(named: Path | None) -> str:
+    """Return the line that tells people which classifier has answered."""
+    return "classifier: the one that ships" if named is None else f"classifier: {named}"
+
+
 def find_meshes(sources: Iterable[Path], *, with_clouds: bool = False) -> list[Path]:
     """Find mesh files: those named, and below a folder those whose endings say so, in the order of names; once each.
 

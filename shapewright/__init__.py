@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from shapewright.lazy_names import lazy_names
 
 if TYPE_CHECKING:
-    from shapewright.classification import Classification, Classifier
+    from shapewright.classification import Classification, Classifier, classify
     from shapewright.errors import Cancelled, ShapewrightError
     from shapewright.estimation import Estimation, EstimationSettings, Query, estimate
     from shapewright.mesh import PointCloud, TriangleMesh
@@ -33,6 +33,7 @@ _HOMES = {
     "TrainedClassifier": "training",
     "TrainingSettings": "training",
     "TriangleMesh": "mesh",
+    "classify": "classification",
     "compile_model": "modeling",
     "estimate": "estimation",
     "load_mesh": "mesh.file",
@@ -59,6 +60,7 @@ __all__ = [
     "TrainedClassifier",
     "TrainingSettings",
     "TriangleMesh",
+    "classify",
     "compile_model",
     "estimate",
     "load_mesh",

@@ -18,17 +18,21 @@ if TYPE_CHECKING:
     )
     from shapewright.classification.evidence import UNKNOWN
     from shapewright.classification.exemplars import Exemplars
+    from shapewright.classification.ready import classify, load_ready_classifier, ready_classifier_file
 
 _HOMES = {
     "Classification": "classifier",
     "Classifier": "classifier",
     "Exemplars": "exemplars",
     "UNKNOWN": "evidence",
+    "classify": "ready",
     "exemplars_file": "classifier",
     "files_digest": "classifier",
     "gather_instances": "class_instances",
     "instances_of_each": "class_instances",
     "load_classifier": "classifier",
+    "load_ready_classifier": "ready",
+    "ready_classifier_file": "ready",
 }
 
 __all__ = [
@@ -36,11 +40,14 @@ __all__ = [
     "Classification",
     "Classifier",
     "Exemplars",
+    "classify",
     "exemplars_file",
     "files_digest",
     "gather_instances",
     "instances_of_each",
     "load_classifier",
+    "load_ready_classifier",
+    "ready_classifier_file",
 ]
 
 __getattr__, __dir__ = lazy_names(__name__, _HOMES)
