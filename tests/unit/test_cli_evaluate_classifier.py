@@ -1,6 +1,7 @@
 """`shapewright evaluate classification` and `retrieval` on a small dataset of two shipped classes and an other."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -107,6 +108,14 @@ def test_the_seed_that_is_asked_for_counts(dataset: Path, tmp_path: Path) -> Non
     chosen = _settings(Options(dataset, None, None, None, 10, with_seed, 3, None, None, baselines=False))
     assert chosen is not None
     assert chosen.seed == 3
+
+
+def test_one_is_trained_only_if_none_is_named_and_training_is_asked_for() -> None:
+    none = Options(Path(), None, None, None, 10, None, 0, None, None, baselines=False)
+    settings, named = replace(none, settings_file=Path("settings.json")), replace(none, classifier=Path("mine.onnx"))
+    assert [one.trains for one in (none, replace(none, train=True), settings)] == [False, True, True]
+    assert not named.trains
+    assert not replace(named, train=True, settings_file=Path("settings.json")).trains
 
 
 @pytest.mark.parametrize("verb", ["classification", "retrieval"])
