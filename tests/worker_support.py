@@ -81,6 +81,7 @@ class Site:
             "SHAPEWRIGHT_PROGRESS_INTERVAL_S": "0.1",
             "SHAPEWRIGHT_CANCEL_CHECK_S": "0.1",
             "SHAPEWRIGHT_RETRY_DELAY_S": "0",
+            "SHAPEWRIGHT_WARM_UP": "false",
             **{f"SHAPEWRIGHT_{name.upper()}": str(value) for name, value in given.items()},
         }
 

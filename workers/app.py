@@ -1,7 +1,7 @@
 """The Celery application of the workers: ``celery -A workers.app worker``."""
 
 import os
-from typing import Any
+from typing import TYPE_CHECKING, Any, Final
 
 from celery import Celery, bootsteps, signals
 
@@ -9,6 +9,13 @@ from models_store.broker import celery_options
 from models_store.job_kinds import TASK_NAMES, JobKind
 from workers.settings import WorkerSettings
 from workers.stopping import StopNotice
+
+if TYPE_CHECKING:
+    from workers.runner import Runner
+
+
+_START_WITHIN_S: Final = 60.0
+"""Seconds in which a child must have started; importing what an estimation needs takes seconds on a busy machine."""
 
 
 class WorkerCelery(Celery):  # type: ignore[misc]
@@ -18,16 +25,23 @@ class WorkerCelery(Celery):  # type: ignore[misc]
         super().__init__("shapewright", **options)
         self.settings = settings
         self.stop_notice = StopNotice()
-        self._runner: Any = None
+        self._runner: Runner | None = None
         self._runner_pid = 0
 
     def run_job(self, job_id: str) -> None:
         """Carry out a job in this process, whose connections are opened with its first one."""
+        self._runner_here().run(job_id)
+
+    def warm_up(self) -> None:
+        """Load into this process what its first job may need; what takes longest goes on in the background."""
+        self._runner_here().warm_up()
+
+    def _runner_here(self) -> "Runner":
         from workers.runner import Runner
 
         if self._runner is None or self._runner_pid != os.getpid():
             self._runner, self._runner_pid = Runner(self.settings, self.stop_notice), os.getpid()
-        self._runner.run(job_id)
+        return self._runner
 
 
 class SweeperStep(bootsteps.StartStopStep):  # type: ignore[misc]
@@ -75,6 +89,7 @@ def create_celery(settings: WorkerSettings | None = None) -> WorkerCelery:
         worker_hijack_root_logger=False,
         worker_send_task_events=False,
         worker_cancel_long_running_tasks_on_connection_loss=False,
+        worker_proc_alive_timeout=_START_WITHIN_S,
         broker_connection_retry=True,
     )
     for kind in JobKind:
@@ -89,8 +104,13 @@ def create_celery(settings: WorkerSettings | None = None) -> WorkerCelery:
     def announce_stop(**_: Any) -> None:
         celery.stop_notice.announce(settings.shutdown_grace_s)
 
+    def prepare_child(**_: Any) -> None:
+        if settings.warm_up:
+            celery.warm_up()
+
     # Signals belong to the process, not to an application; a process has one worker.
     signals.setup_logging.connect(configure, weak=False, dispatch_uid="shapewright")
+    signals.worker_process_init.connect(prepare_child, weak=False, dispatch_uid="shapewright")
     signals.worker_shutting_down.connect(announce_stop, weak=False, dispatch_uid="shapewright")
 
     return celery

@@ -23,6 +23,7 @@ from workers.context import JobContext, Outcome, WorkerProgress, utc_now
 from workers.settings import WorkerSettings
 from workers.stopping import GivingWay, StopNotice, WorkerStopping
 from workers.tasks import TASKS
+from workers.warming import load_estimation
 
 log = structlog.get_logger(__name__)
 
@@ -67,6 +68,11 @@ class Runner:
             return
         with structlog.contextvars.bound_contextvars(job_id=held.job_id, kind=held.kind.value, attempt=held.attempt):
             self._work(held)
+
+    def warm_up(self) -> None:
+        """Start the process that reads files, and load what an estimation needs."""
+        self._reader.prepare()
+        load_estimation()
 
     def close(self) -> None:
         """Close the database connections, and end the process that reads files."""

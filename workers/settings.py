@@ -12,6 +12,8 @@ class WorkerSettings(StoreSettings):
 
     Attributes:
         worker_concurrency: jobs at the same time, each in a child process of its own.
+        warm_up: whether each child process, as it starts, imports what an estimation needs and loads its compiled
+            kernels: its first estimation begins more than a second earlier, and it needs 100 MB more from the start.
         sweep_interval_s: how often the worker looks for jobs of lost workers and for forgotten ones.
         progress_interval_s: progress is written at most so often.
         cancel_check_s: how often a running job looks whether it shall stop.
@@ -24,6 +26,7 @@ class WorkerSettings(StoreSettings):
     """
 
     worker_concurrency: int = Field(default=1, ge=1)
+    warm_up: bool = True
     sweep_interval_s: float = Field(default=2.0, gt=0)
     progress_interval_s: float = Field(default=0.5, gt=0)
     cancel_check_s: float = Field(default=1.0, gt=0)

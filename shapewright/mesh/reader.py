@@ -41,6 +41,12 @@ class MeshReader:
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    def prepare(self) -> None:
+        """Start a process for the next file, unless one waits; it imports what reading takes in its own time."""
+        with self._lock:
+            if len(self._idle) < min(self._kept, 1):
+                self._idle.append(_Process())
+
     def close(self) -> None:
         """End the processes that wait; reading one more file starts a new one."""
         with self._lock:

@@ -298,6 +298,15 @@ reader_process.main()
     assert child.stdout.endswith(b'{"status": -9, "size": 0}\n')
 
 
+def test_a_prepared_reader_has_a_process_for_the_first_file():
+    with MeshReader() as reader:
+        reader.prepare()
+        reader.prepare()
+        (process,) = reader._idle
+        np.testing.assert_array_equal(parse_mesh(WRITTEN["off"], "off", reader=reader).faces, BALL.faces)
+        assert reader._idle == [process]
+
+
 def test_threads_share_a_reader():
     types = ["obj", "off", "stl", "ply"] * 4
     with MeshReader() as reader, ThreadPoolExecutor(3) as pool:
