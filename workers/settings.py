@@ -13,7 +13,7 @@ class WorkerSettings(StoreSettings):
     Attributes:
         worker_concurrency: jobs at the same time, each in a child process of its own.
         warm_up: whether each child process, as it starts, imports what an estimation needs and loads its compiled
-            kernels: its first estimation begins more than a second earlier, and it needs 100 MB more from the start.
+            kernels, so that its first estimation need not; it occupies some 200 MB more from the start.
         sweep_interval_s: how often the worker looks for jobs of lost workers and for forgotten ones.
         progress_interval_s: progress is written at most so often.
         cancel_check_s: how often a running job looks whether it shall stop.
