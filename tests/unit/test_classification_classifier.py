@@ -13,7 +13,7 @@ import simple_shapes
 from simple_shapes import toy_classes
 
 from shapewright.classification import UNKNOWN, Classifier, exemplars_file, load_classifier
-from shapewright.classification.file_format import FORMAT_VERSION
+from shapewright.classification.file_format import FORMAT_VERSION, read_metadata
 from shapewright.distances.panorama import panorama_descriptor
 from shapewright.errors import ClassifierError
 from shapewright.network import load_backbone
@@ -74,6 +74,10 @@ def test_own_instances_are_known_and_assemblies_are_not(classifier):
     best = classifier.classify(own[int(np.argmax(own_known))], views=6)
     assert best.is_known
     assert best.answer == best.class_name
+
+
+def test_what_the_file_says_of_itself_can_be_read_without_the_network(trained, pictures_alone):
+    assert read_metadata(trained.onnx) == pictures_alone.metadata
 
 
 def test_without_objects_of_no_class_everything_is_known():
