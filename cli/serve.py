@@ -42,6 +42,9 @@ def serve(
 ) -> None:
     """Start the REST service, the dashboard and a worker; Ctrl-C stops all of them.
 
+    A new database begins with the models that ship and the ready classifier: open the address, drop a mesh.
+    SHAPEWRIGHT_ADD_SHIPPED_ON_START=false begins with nothing.
+
     The embedded default needs no server: SQLite, a folder of files and a queue in --data-dir. For production set
     SHAPEWRIGHT_DATABASE_URL, SHAPEWRIGHT_BROKER_URL and SHAPEWRIGHT_ARTIFACTS_URL, and start as many workers as you
     like with [bold]celery -A workers.app worker[/].

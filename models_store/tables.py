@@ -172,7 +172,7 @@ class MeshRow(Base):
 
 
 class ClassifierRow(Base):
-    """A classifier: asked for with its job, complete once ``onnx_key`` is set.
+    """A classifier: asked for with its job, complete once ``onnx_key`` is set. The one that ships has no job.
 
     ``negative_model_ids`` and ``exemplars_key`` are null in older rows, and where there is no such thing.
     """
@@ -181,7 +181,7 @@ class ClassifierRow(Base):
     __table_args__ = (Index(None, "created_at", "id"),)
 
     id: Mapped[str] = mapped_column(String(32), primary_key=True)
-    job_id: Mapped[str] = mapped_column(ForeignKey(JobRow.id), unique=True)
+    job_id: Mapped[str | None] = mapped_column(ForeignKey(JobRow.id), unique=True)
     name: Mapped[str | None] = mapped_column(Text)
     model_ids: Mapped[list[str]]
     negative_model_ids: Mapped[list[str] | None]
@@ -192,7 +192,12 @@ class ClassifierRow(Base):
     exemplars_key: Mapped[str | None] = mapped_column(Text)
     seconds: Mapped[float | None]
     created_at: Mapped[datetime]
-    job: Mapped[JobRow] = relationship(lazy="joined", innerjoin=True)
+    job: Mapped[JobRow | None] = relationship(lazy="joined")
+
+    @property
+    def state(self) -> JobState:
+        """The state of the training; a classifier that ships is trained."""
+        return JobState.SUCCEEDED if self.job is None else self.job.state
 
 
 class ClassificationRow(Base):
@@ -322,4 +327,18 @@ class EstimatedMeshRow(Base):
     measures: Mapped[dict[str, Any]]
     error: Mapped[str | None] = mapped_column(Text)
     seconds: Mapped[float | None]
+    created_at: Mapped[datetime]
+
+
+class ShippedRow(Base):
+    """A model or classifier that came with a release and was added to this database, perhaps deleted since.
+
+    Its id is the SHA-256 of its content; ``kind`` is ``model`` or ``classifier``. Versions share a ``name``.
+    """
+
+    __tablename__ = "shipped"
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    kind: Mapped[str] = mapped_column(String(16))
+    name: Mapped[str] = mapped_column(Text)
     created_at: Mapped[datetime]

@@ -4,14 +4,17 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import version
 
+import structlog
 from fastapi import FastAPI
 from fastapi.middleware.cors import CORSMiddleware
 from fastapi.routing import APIRoute
+from sqlalchemy.exc import SQLAlchemyError
 from starlette.concurrency import run_in_threadpool
 
 from models_store.session import upgrade
+from models_store.shipping import add_shipped
 from service.body_limit import BodyLimitMiddleware
-from service.dependencies import Services
+from service.dependencies import Services, now
 from service.errors import install_handlers
 from service.logs import configure_logs
 from service.openapi import install_openapi
@@ -32,6 +35,9 @@ from service.routes import (
     retrievals,
 )
 from service.settings import ServiceSettings
+from shapewright.errors import ShapewrightError
+
+log = structlog.stdlib.get_logger("shapewright.service")
 
 
 def create_app(settings: ServiceSettings | None = None) -> FastAPI:
@@ -48,6 +54,8 @@ def create_app(settings: ServiceSettings | None = None) -> FastAPI:
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         if settings.migrate_on_start:
             await run_in_threadpool(upgrade, services.database.engine)
+        if settings.add_shipped_on_start:
+            await run_in_threadpool(_add_shipped, services)
         try:
             yield
         finally:
@@ -93,6 +101,18 @@ def create_app(settings: ServiceSettings | None = None) -> FastAPI:
         )
     app.add_middleware(RequestContextMiddleware, metrics=services.metrics)
     return app
+
+
+def _add_shipped(services: Services) -> None:
+    """Add what ships; a service that cannot do so starts all the same, and tries again with its next start."""
+    folder = services.settings.ready_classifier_dir
+    try:
+        added = add_shipped(services.database, services.artifacts, now=now(), ready_dir=folder)
+    except (ShapewrightError, SQLAlchemyError, OSError) as error:
+        log.error("what ships was not added", error=str(error))
+    else:
+        if added:
+            log.info("what ships was added", count=len(added))
 
 
 def _operation_id(route: APIRoute) -> str:

@@ -17,6 +17,10 @@ class ServiceSettings(StoreSettings):
     Attributes:
         migrate_on_start: bring the database to the newest revision at start. Switch it off where a deployment
             does that in a step of its own.
+        add_shipped_on_start: add the models that ship and the ready classifier at start, each version once. What
+            was deleted since stays deleted.
+        ready_classifier_dir: folder of another ready classifier (``classifier.onnx`` and, beside it,
+            ``classifier.exemplars.npz``); default the one that ships.
         max_mesh_bytes: largest mesh file that can be uploaded.
         max_model_bytes: largest document of a procedural model.
         max_body_bytes: largest body of any other request.
@@ -32,6 +36,8 @@ class ServiceSettings(StoreSettings):
     """
 
     migrate_on_start: bool = True
+    add_shipped_on_start: bool = True
+    ready_classifier_dir: Path | None = None
     max_mesh_bytes: int = Field(default=64 * 2**20, ge=1)
     max_model_bytes: int = Field(default=16 * 2**20, ge=1)
     max_body_bytes: int = Field(default=2**20, ge=1)

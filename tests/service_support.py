@@ -92,8 +92,14 @@ class LiveService:
 
 @contextmanager
 def running(data_dir: Path, **settings: Any) -> Iterator[LiveService]:
-    """Run the service on a free port in a thread of this process."""
-    options = {"event_poll_s": 0.02, "broker_timeout_s": 0.5, "log_level": "CRITICAL", **settings}
+    """Run the service on a free port in a thread of this process; without what ships, if the settings do not ask."""
+    options = {
+        "add_shipped_on_start": False,
+        "event_poll_s": 0.02,
+        "broker_timeout_s": 0.5,
+        "log_level": "CRITICAL",
+        **settings,
+    }
     app = create_app(ServiceSettings(data_dir=data_dir, **options))
     with socket.create_server(("127.0.0.1", 0)) as listener:
         config = uvicorn.Config(app, log_config=None, ws="none", lifespan="on", timeout_graceful_shutdown=2)

@@ -50,6 +50,7 @@ from models_store.catalog.meshes import add_mesh, get_mesh, list_meshes, mesh_id
 from models_store.catalog.models import (
     add_model,
     get_model,
+    known_models,
     list_classes,
     list_models,
     models_of_class,
@@ -62,13 +63,25 @@ from models_store.catalog.retrievals import (
     record_retrieval,
     request_retrieval,
 )
+from models_store.catalog.shipped import (
+    ShippedItem,
+    ShippedKind,
+    add_shipped_classifier,
+    add_shipped_model,
+    missing_shipped,
+    shipped_classifier,
+)
 
 __all__ = [
     "DoneCounts",
     "RankedMesh",
     "RowOrder",
+    "ShippedItem",
+    "ShippedKind",
     "add_mesh",
     "add_model",
+    "add_shipped_classifier",
+    "add_shipped_model",
     "all_estimated",
     "count_estimated",
     "estimated_positions",
@@ -81,6 +94,7 @@ __all__ = [
     "get_model",
     "get_retrieval",
     "index_keys",
+    "known_models",
     "list_classes",
     "list_classifications",
     "list_classifiers",
@@ -92,6 +106,7 @@ __all__ = [
     "list_retrievals",
     "mesh_id",
     "mesh_names",
+    "missing_shipped",
     "models_of_class",
     "newest_classifier",
     "page_of_estimated",
@@ -110,5 +125,6 @@ __all__ = [
     "request_estimation",
     "request_retrieval",
     "request_thumbnail",
+    "shipped_classifier",
     "store_mesh",
 ]

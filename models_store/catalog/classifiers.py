@@ -122,7 +122,7 @@ def ready_classifier(session: Session, identifier: str | None) -> ClassifierRow:
         return newest
     row = get_classifier(session, identifier)
     if row.onnx_key is None:
-        raise NotReadyError(f"this classifier is not trained (its job is {row.job.state.value})", where="classifier_id")
+        raise NotReadyError(f"this classifier is not trained (its job is {row.state.value})", where="classifier_id")
     return row
 
 

@@ -1,5 +1,6 @@
 """Procedural models: content-addressed, immutable, with a thumbnail that a job draws."""
 
+import hashlib
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
@@ -21,11 +22,20 @@ if TYPE_CHECKING:
     from shapewright.modeling import Condition, Parameter, ProceduralModel
 
 
-def add_model(session: Session, model: "ProceduralModel", *, now: datetime) -> tuple[ModelRow, bool]:
-    """Add a model. Returns its row, and whether it is new; the same document twice is one model."""
-    document = model.to_json()
+def add_model(
+    session: Session, model: "ProceduralModel", *, now: datetime, document: str | None = None
+) -> tuple[ModelRow, bool]:
+    """Add a model. Returns its row, and whether it is new; the same document twice is one model.
+
+    Args:
+        session: a writing session.
+        model: the model.
+        now: the time, with a zone.
+        document: its canonical text, where that is at hand.
+    """
+    document = model.to_json() if document is None else document
     row = ModelRow(
-        id=model.digest,
+        id=hashlib.sha256(document.encode()).hexdigest(),
         name=storable(model.name),
         class_name=storable(model.class_name),
         description=storable(model.description),
@@ -48,6 +58,12 @@ def get_model(session: Session, model_id: str) -> ModelRow:
         NotFoundError: there is none.
     """
     return get_row(session, ModelRow, "model", model_id)
+
+
+def known_models(session: Session, model_ids: Sequence[str]) -> list[ModelRow]:
+    """The models with these ids, without those that are not there; in the order of the ids."""
+    rows = {row.id: row for row in session.scalars(select(ModelRow).where(ModelRow.id.in_(model_ids)))}
+    return [rows[model_id] for model_id in model_ids if model_id in rows]
 
 
 def list_models(

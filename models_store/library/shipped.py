@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 DOCUMENT = "model.json"
 ANNOTATIONS = "annotations.json"
 THUMBNAIL = "thumbnail.png"
+READY = "ready"
+CLASSIFIER = "classifier.onnx"
+EXEMPLARS = "classifier.exemplars.npz"
 
 
 def list_shipped() -> dict[str, Traversable]:
@@ -56,9 +59,14 @@ def thumbnail_png(name: str) -> bytes:
     return (_checked(name) / THUMBNAIL).read_bytes()
 
 
+def ready_folder() -> Traversable:
+    """Return the folder of the classifier that ships: :data:`CLASSIFIER` and :data:`EXEMPLARS`."""
+    return _library() / READY
+
+
 def _model_folders() -> dict[str, tuple[str, Traversable]]:
     """Return the class and the folder of each shipped model, by name, sorted by name."""
-    classes = [entry for entry in resources.files("models_store.library").iterdir() if entry.is_dir()]
+    classes = [entry for entry in _library().iterdir() if entry.is_dir()]
     found = {
         folder.name: (entry.name, folder)
         for entry in classes
@@ -66,6 +74,10 @@ def _model_folders() -> dict[str, tuple[str, Traversable]]:
         if (folder / DOCUMENT).is_file()
     }
     return dict(sorted(found.items()))
+
+
+def _library() -> Traversable:
+    return resources.files("models_store.library")
 
 
 def _checked(name: str) -> Traversable:

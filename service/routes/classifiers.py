@@ -41,6 +41,7 @@ def create_classifier(services: ServicesDep, response: Response, after: Backgrou
         name = "model_ids" if error.identifier in body.model_ids else "negative_model_ids"
         index = getattr(body, name).index(error.identifier)
         raise reference_error(error, f"{name}[{index}]") from None
+    assert row.job is not None, "what is asked for has a job"
     after.add_task(services.announce, row.job)
     response.headers["Location"] = f"/v1/jobs/{row.job_id}"
     return AcceptedOut.from_row(row.job)
@@ -76,7 +77,7 @@ def get_classifier_onnx(request: Request, services: ServicesDep, id: IdPath) -> 
         row = catalog.get_classifier(session, id)
     key = row.onnx_key
     if key is None:
-        state = row.job.state.value
+        state = row.state.value
         raise ProblemError(
             Problem(404, "not-ready", "It is not ready yet", f"the training of this classifier is {state}")
         )
@@ -102,7 +103,7 @@ def get_classifier_exemplars(request: Request, services: ServicesDep, id: IdPath
         row = catalog.get_classifier(session, id)
     key = row.exemplars_key
     if key is None:
-        state = row.job.state.value
+        state = row.state.value
         detail = "it has none" if row.onnx_key else f"the training of this classifier is {state}"
         raise ProblemError(Problem(404, "not-ready", "It is not ready yet", detail))
     response = immutable_response(

@@ -104,12 +104,12 @@ class ClassifierOut(OutBody):
     negative_model_ids: list[str]
     settings: dict[str, Any]
     metrics: dict[str, Any] | None
-    job_id: str
+    job_id: str | None = Field(description="The training; null for the ready classifier, which ships trained.")
     onnx_url: str | None = Field(description="The ONNX file; null until the training has succeeded.")
     exemplars_url: str | None = Field(
         description="The geometry of the variations (.npz); null until the training has succeeded, and without any."
     )
-    seconds: float | None = Field(description="How long the training took.")
+    seconds: float | None = Field(description="How long the training took; null until then, and if it ships.")
     created_at: Moment
 
     @classmethod
@@ -118,7 +118,7 @@ class ClassifierOut(OutBody):
         return cls(
             id=row.id,
             name=row.name,
-            state=row.job.state,
+            state=row.state,
             class_names=row.class_names,
             model_ids=row.model_ids,
             negative_model_ids=row.negative_model_ids or [],

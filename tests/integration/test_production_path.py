@@ -65,6 +65,7 @@ def test_the_whole_path_on_postgresql_and_redis(
         "SHAPEWRIGHT_DATABASE_URL": postgres_url.replace("+psycopg", ""),
         "SHAPEWRIGHT_BROKER_URL": redis_url,
         "SHAPEWRIGHT_ARTIFACTS_URL": (tmp_path / "artifacts").as_uri(),
+        "SHAPEWRIGHT_ADD_SHIPPED_ON_START": "false",  # models are uploaded and drawn here
     }
     api = _command(repository, "api")
     api[api.index("--host") + 1], api[api.index("--port") + 1] = "127.0.0.1", str(port)

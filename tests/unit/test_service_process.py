@@ -12,6 +12,8 @@ from service_support import box, tetrahedron
 from services import free_port, logged_process
 from waiting import PATIENCE_S
 
+from models_store.library.shipped import list_classes
+
 HEAVY = ("torch", "moderngl", "numba", "llvmlite", "onnxruntime", "onnx", "workers", "cli", "matplotlib")
 
 PROGRAM = """
@@ -23,9 +25,10 @@ from service_support import box, running, tetrahedron
 def loaded(names):
     return [name for name in names if name in sys.modules]
 
-with running(Path(sys.argv[1])) as live:
+with running(Path(sys.argv[1]), add_shipped_on_start=True) as live:
     heavy = sys.argv[3].split(",")
     at_start = loaded(heavy)
+    shipped = len(live.client.get("/v1/classes").json()["items"])
     model, mesh = live.add_model("box"), live.upload(tetrahedron()).json()
     crate = live.add_model("crate")
     post = live.client.post
@@ -40,7 +43,7 @@ with running(Path(sys.argv[1])) as live:
         live.client.get("/openapi.json"),
     ]
     statuses = [answer.status_code for answer in answers]
-    print(json.dumps({"at_start": at_start, "after_requests": loaded(heavy), "statuses": statuses}))
+    print(json.dumps({"at_start": at_start, "after_requests": loaded(heavy), "statuses": statuses, "shipped": shipped}))
 """
 
 
@@ -51,6 +54,7 @@ def test_the_api_loads_what_evaluates_models_when_asked_and_nothing_else_that_is
     run = subprocess.run(command, cwd=repository, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
     told = json.loads(run.stdout.splitlines()[-1])
+    assert told.pop("shipped") == len(list_classes())
     evaluates = ["numba", "llvmlite"]
     assert told == {"at_start": [], "after_requests": evaluates, "statuses": [200, 202, 202, 200, 200, 200, 200, 200]}
 

@@ -5,10 +5,13 @@ import json
 from collections.abc import Iterator
 
 import pytest
+from alembic import command
 from alembic.autogenerate import compare_metadata
+from alembic.config import Config
 from alembic.migration import MigrationContext
 from alembic.operations import Operations
-from sqlalchemy import inspect, text
+from sqlalchemy import Connection, inspect, text
+from sqlalchemy.exc import IntegrityError
 
 from models_store.session import Database, upgrade
 from models_store.settings import StoreSettings
@@ -62,3 +65,83 @@ def test_answers_of_before_say_their_model_in_the_new_way(empty_database: Databa
         revision.downgrade()
         back, _ = results()
         assert back["models_tried"] == old["models_tried"]
+
+
+def test_a_classifier_keeps_what_was_asked_of_it_when_its_job_may_be_missing(empty_database: Database) -> None:
+    engine = empty_database.engine
+    now = {"now": "2026-12-01 00:00:00+00:00"}
+    jobs = ("train", "ask", "index")
+    with engine.execution_options(**{"shapewright_writes": True}).begin() as connection:
+        _migrate(connection, "20261126_collection_estimations")
+        for job in jobs:
+            connection.execute(
+                text(
+                    "INSERT INTO jobs (id, kind, state, payload, result_id, attempt, max_attempts, token, event_count, "
+                    "cancel_requested, progress_fraction, progress_message, created_at, wakeup_count) "
+                    f"VALUES ('{job}', 'classify', 'succeeded', '{{}}', 'r', 1, 3, 1, 1, false, 1, '', :now, 0)"
+                ),
+                now,
+            )
+        connection.execute(
+            text(
+                "INSERT INTO meshes (id, file_name, file_type, file_size, vertex_count, face_count, bounds, "
+                "watertight, source_key, content_key, created_at) "
+                "VALUES ('m', 'a.off', 'off', 1, 4, 4, '[]', true, 's', 'c', :now)"
+            ),
+            now,
+        )
+        connection.execute(
+            text(
+                "INSERT INTO classifiers (id, job_id, name, model_ids, class_names, settings, onnx_key, created_at) "
+                "VALUES ('old', 'train', 'mine', '[]', '[\"a\"]', '{}', 'k', :now)"
+            ),
+            now,
+        )
+        connection.execute(
+            text(
+                "INSERT INTO classifications (id, job_id, mesh_id, classifier_id, settings, created_at) "
+                "VALUES ('asked', 'ask', 'm', 'old', '{}', :now)"
+            ),
+            now,
+        )
+
+    def names() -> list[tuple[str, str | None, str | None]]:
+        with engine.connect() as connection:
+            found = connection.execute(
+                text(
+                    "SELECT classifiers.id, classifiers.name, classifications.id FROM classifiers "
+                    "LEFT JOIN classifications ON classifier_id = classifiers.id ORDER BY classifiers.id DESC"
+                )
+            )
+            return [tuple(row) for row in found]
+
+    upgrade(engine)
+    assert names() == [("old", "mine", "asked")]
+    with engine.begin() as connection:
+        connection.execute(
+            text(
+                "INSERT INTO classifiers (id, model_ids, class_names, settings, onnx_key, created_at) "
+                "VALUES ('new', '[]', '[]', '{}', 'k', :now)"
+            ),
+            now,
+        )
+        connection.execute(
+            text(
+                "INSERT INTO classifications (id, job_id, mesh_id, classifier_id, settings, created_at) "
+                "VALUES ('again', 'index', 'm', 'new', '{}', :now)"
+            ),
+            now,
+        )
+    with engine.connect() as connection, pytest.raises(IntegrityError):
+        connection.execute(text("DELETE FROM classifiers WHERE id = 'old'"))
+    with engine.execution_options(**{"shapewright_writes": True}).begin() as connection:
+        _migrate(connection, "20261126_collection_estimations", down=True)
+    assert names() == [("old", "mine", "asked")]
+
+
+def _migrate(connection: Connection, revision: str, *, down: bool = False) -> None:
+    config = Config()
+    config.set_main_option("script_location", "models_store:migrations")
+    config.set_main_option("path_separator", "os")
+    config.attributes["connection"] = connection
+    (command.downgrade if down else command.upgrade)(config, revision)

@@ -1028,8 +1028,11 @@ export interface components {
             metrics: {
                 [key: string]: unknown;
             } | null;
-            /** Job Id */
-            job_id: string;
+            /**
+             * Job Id
+             * @description The training; null for the ready classifier, which ships trained.
+             */
+            job_id: string | null;
             /**
              * Onnx Url
              * @description The ONNX file; null until the training has succeeded.
@@ -1042,7 +1045,7 @@ export interface components {
             exemplars_url: string | null;
             /**
              * Seconds
-             * @description How long the training took.
+             * @description How long the training took; null until then, and if it ships.
              */
             seconds: number | null;
             /**
