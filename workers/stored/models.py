@@ -17,6 +17,8 @@ _MOST_COMPILED: Final = 16
 class StoredModels(Mapping[str, "CompiledModel"]):
     """The models that a classifier learned from by their digests, which are their ids; compiled when asked for.
 
+    Models that are not in the catalog are left out: the ready classifier may have learned from others.
+
     Args:
         context: of the job.
         classifier_id: of the classifier.
@@ -25,7 +27,8 @@ class StoredModels(Mapping[str, "CompiledModel"]):
     def __init__(self, context: JobContext, classifier_id: str) -> None:
         self._context = context
         with context.database.reading() as session:
-            self._ids = tuple(catalog.get_classifier(session, classifier_id).model_ids)
+            learned_from = catalog.get_classifier(session, classifier_id).model_ids
+            self._ids = tuple(row.id for row in catalog.known_models(session, learned_from))
 
     def __getitem__(self, model_id: str) -> "CompiledModel":
         if model_id not in self._ids:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from models_store import catalog
+from models_store.errors import StoreError
 from models_store.tables import CollectionRow, RetrievalRow
 from shapewright.progress import PartialProgress, Progress
 from workers.context import JobContext, Outcome
@@ -93,9 +94,11 @@ def _models(context: JobContext, row: RetrievalRow, collection: CollectionRow) -
     if row.model_id is not None:
         return [compile_model(context.load_model(row.model_id))]
     with context.database.reading() as session:
-        model_ids = catalog.get_classifier(session, collection.classifier_id).model_ids
-        of_class = [one for one in model_ids if catalog.get_model(session, one).class_name == row.class_name]
-    return [compile_model(context.load_model(model_id)) for model_id in of_class]
+        learned_from = catalog.get_classifier(session, collection.classifier_id).model_ids
+        of_class = [one for one in catalog.known_models(session, learned_from) if one.class_name == row.class_name]
+    if not of_class:
+        raise StoreError("none of the models that this class was learned from is in the catalog", where="class_name")
+    return [compile_model(context.load_model(model.id)) for model in of_class]
 
 
 def _exemplars(
