@@ -28,7 +28,7 @@ def request_classification(
     Args:
         session: a writing session.
         mesh_id: the query.
-        classifier_id: which classifier to ask; ``None`` is the newest one that is ready.
+        classifier_id: which classifier to ask; ``None`` is the one that ships, or without it the newest.
         settings: ``views`` (count of rendered views), ``seed`` and ``fit`` (whether classes are fitted).
         now: the time, with a zone.
         max_attempts: of the job.

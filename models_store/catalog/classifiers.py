@@ -9,6 +9,7 @@ from sqlalchemy.orm import Session
 
 from models_store.catalog.models import get_model
 from models_store.catalog.rows import get_row
+from models_store.catalog.shipped import shipped_classifier
 from models_store.errors import NotReadyError, StoreError
 from models_store.jobs import JobKind, create_job, new_id
 from models_store.paging import Page, fetch_page
@@ -109,17 +110,17 @@ def newest_classifier(session: Session) -> ClassifierRow | None:
 
 
 def ready_classifier(session: Session, identifier: str | None) -> ClassifierRow:
-    """The classifier that is to be asked; ``None`` is the newest one that is ready.
+    """The classifier that is to be asked; ``None`` is the one that ships, or without it the newest that is trained.
 
     Raises:
         NotFoundError: there is none with this id.
         NotReadyError: it is not trained yet, or there is none at all.
     """
     if identifier is None:
-        newest = newest_classifier(session)
-        if newest is None:
-            raise NotReadyError("no classifier has been trained yet", where="classifier_id")
-        return newest
+        found = shipped_classifier(session) or newest_classifier(session)
+        if found is None:
+            raise NotReadyError("no classifier is ready; train one with POST /v1/classifiers", where="classifier_id")
+        return found
     row = get_classifier(session, identifier)
     if row.onnx_key is None:
         raise NotReadyError(f"this classifier is not trained (its job is {row.state.value})", where="classifier_id")

@@ -31,7 +31,7 @@ def request_collection(
     Args:
         session: a writing session.
         mesh_ids: the meshes. Repeated ids count once.
-        classifier_id: which classifier looks at them; ``None`` is the newest one that is ready.
+        classifier_id: which classifier looks at them; ``None`` is the one that ships, or without it the newest.
         name: a name for people.
         now: the time, with a zone.
         max_attempts: of the job.

@@ -13,7 +13,10 @@ class ClassificationIn(InBody):
     """A mesh to classify."""
 
     mesh_id: Identifier
-    classifier_id: Identifier | None = Field(default=None, description="null: the newest that succeeded.")
+    classifier_id: Identifier | None = Field(
+        default=None,
+        description="null: the ready classifier that ships; where there is none, the newest that succeeded.",
+    )
     views: Annotated[int, Field(ge=1, le=200)] = Field(default=10, description="Images to average over.")
     seed: Seed = 0
     fit: bool = Field(

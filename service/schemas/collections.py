@@ -14,7 +14,10 @@ class CollectionIn(InBody):
 
     name: Annotated[str, Field(min_length=1, max_length=200)] | None = None
     mesh_ids: Annotated[list[Identifier], Field(min_length=1, max_length=10_000)]
-    classifier_id: Identifier | None = Field(default=None, description="null: the newest that succeeded.")
+    classifier_id: Identifier | None = Field(
+        default=None,
+        description="null: the ready classifier that ships; where there is none, the newest that succeeded.",
+    )
 
 
 class CollectionOut(OutBody):

@@ -871,7 +871,7 @@ export interface components {
             mesh_id: string;
             /**
              * Classifier Id
-             * @description null: the newest that succeeded.
+             * @description null: the ready classifier that ships; where there is none, the newest that succeeded.
              */
             classifier_id?: string | null;
             /**
@@ -1247,7 +1247,7 @@ export interface components {
             mesh_ids: string[];
             /**
              * Classifier Id
-             * @description null: the newest that succeeded.
+             * @description null: the ready classifier that ships; where there is none, the newest that succeeded.
              */
             classifier_id?: string | null;
         };
