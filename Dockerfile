@@ -7,6 +7,7 @@ WORKDIR /src/service/dashboard
 COPY service/dashboard/package.json service/dashboard/package-lock.json ./
 RUN npm ci --no-audit --no-fund
 COPY openapi /src/openapi
+COPY examples/goblet.ply /src/examples/goblet.ply
 COPY service/dashboard ./
 RUN npm run build
 

@@ -7,6 +7,7 @@ const service = process.env["SHAPEWRIGHT_SERVICE_URL"] ?? "http://127.0.0.1:8000
 export default defineConfig({
   plugins: [react()],
   server: {
+    fs: { allow: [".", "../../examples"] }, // the sample mesh
     proxy: Object.fromEntries(["/v1", "/readyz", "/healthz"].map((path) => [path, service])),
   },
   build: {

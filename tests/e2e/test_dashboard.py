@@ -5,6 +5,7 @@ import os
 import re
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,8 +19,11 @@ from waiting import PATIENCE_S
 
 from cli.client import Client, connected
 from cli.local_service import local_service
+from models_store.library.shipped import CLASSIFIER, list_classes, list_shipped, load_shipped
+from shapewright.classification import exemplars_file
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling import ProceduralModel, Recorder, compile_model
+from shapewright.training import TrainingSettings, train_classifier
 
 pytestmark = pytest.mark.browser
 
@@ -47,24 +51,57 @@ class Site:
 
 
 @pytest.fixture(scope="module")
-def site(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+def built_dashboard(repository: Path) -> None:
+    """Skip, or fail in CI, where there is no page to look at."""
     if not (repository / "service" / "dashboard" / "dist" / "index.html").is_file():
         message = "the dashboard is not built: bash scripts/setup test"
         if os.environ.get("CI") == "true":
             pytest.fail(message)
         pytest.skip(message)
+
+
+@pytest.fixture(scope="module")
+def site(built_dashboard: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     folder = tmp_path_factory.mktemp("dashboard")
     lamp_file, crate_file = write_lamp_model(folder), _write_crate_model(folder)
     with (
-        local_service(folder / "data", port=0, log=folder / "service.log") as document,
-        connected(document["url"], ready_within_s=PATIENCE_S) as client,
+        pytest.MonkeyPatch.context() as patch,
+        _started(folder, patch, ADD_SHIPPED_ON_START="false") as url,
+        connected(url, ready_within_s=PATIENCE_S) as client,
     ):
         lamp, _ = client.post_document("/v1/models", lamp_file.read_text())
         crate, _ = client.post_document("/v1/models", crate_file.read_text())
         chair, _ = client.post_document("/v1/models", armchair().to_json())
         client.post_document("/v1/models", _stool().to_json())
         _train(client, [lamp["id"], crate["id"]])
-        yield Site(document["url"], lamp["id"], chair["id"], ProceduralModel.load(lamp_file))
+        yield Site(url, lamp["id"], chair["id"], ProceduralModel.load(lamp_file))
+
+
+@pytest.fixture(scope="module")
+def fresh_url(built_dashboard: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The address of a service as it begins: what ships, but with a small ready classifier of two classes."""
+    folder = tmp_path_factory.mktemp("fresh")
+    classes = {name: [compile_model(load_shipped(name))] for name in ("glass_with_stem", "sword")}
+    settings = TrainingSettings(variations=12, images_per_variation=2, image_size=96, negatives=12, epochs=20)
+    trained = train_classifier(classes, settings)
+    onnx = folder / CLASSIFIER
+    onnx.write_bytes(trained.onnx)
+    assert trained.exemplars is not None
+    trained.exemplars.save(exemplars_file(onnx))
+    with (
+        pytest.MonkeyPatch.context() as patch,
+        _started(folder, patch, READY_CLASSIFIER_DIR=str(folder)) as url,
+    ):
+        yield url
+
+
+@contextmanager
+def _started(folder: Path, patch: pytest.MonkeyPatch, **settings: str) -> Iterator[str]:
+    for name, value in settings.items():
+        patch.setenv(f"SHAPEWRIGHT_{name}", value)
+    with local_service(folder / "data", port=0, log=folder / "service.log") as document:
+        patch.undo()
+        yield document["url"]
 
 
 def _write_crate_model(folder: Path) -> Path:
@@ -106,12 +143,14 @@ def new_page(browser: Browser, site: Site) -> Iterator[Callable[..., Page]]:
     contexts = []
     thrown: list[str] = []
 
-    def open_page(route: str = "", *, width: int = 1280, height: int = 800, scheme: str = "light") -> Page:
+    def open_page(
+        route: str = "", *, width: int = 1280, height: int = 800, scheme: str = "light", url: str = site.url
+    ) -> Page:
         context = browser.new_context(
             viewport={"width": width, "height": height},
             color_scheme=scheme,  # type: ignore[arg-type]
             reduced_motion="reduce",
-            base_url=site.url,
+            base_url=url,
         )
         context.set_default_timeout(PATIENCE_MS)
         contexts.append(context)
@@ -175,6 +214,71 @@ def _like(other: np.ndarray) -> Callable[[np.ndarray], bool]:
 
 def _changed_share(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.mean(np.abs(a - b).max(axis=2) > 12))
+
+
+def test_the_page_opens_on_something_to_do(new_page: Callable[..., Page], fresh_url: str, tmp_path: Path) -> None:
+    page = new_page(url=fresh_url)
+    start = page.get_by_role("region", name="What is this mesh?")
+    expect(start.get_by_role("button", name="Drop a mesh")).to_be_enabled()
+    expect(start.get_by_role("heading", name="The classifier knows 2 classes")).to_be_visible()
+    page.wait_for_function(
+        "() => { const all = [...document.querySelectorAll('.start img')];"
+        " return all.length === 2 && all.every((image) => image.naturalWidth > 0); }"
+    )
+    expect(page.get_by_role("region", name="Models").get_by_role("group")).to_have_count(len(list_classes()))
+    expect(page.get_by_role("region", name="Models").locator(".model-card")).to_have_count(len(list_shipped()))
+    page.screenshot(path=tmp_path / "start.png")
+
+    # From the keyboard alone: skip what is beside it, pass the drop zone, and try the goblet.
+    for key in ("Tab", "Enter", "Tab", "Tab", "Enter"):
+        page.keyboard.press(key)
+    answer = page.get_by_test_id("answer")
+    expect(answer).to_contain_text("Glass with stem")  # as the class, or as the nearest one
+    expect(page.get_by_test_id("probabilities").get_by_role("listitem")).to_have_count(2)
+    expect(page.get_by_test_id("probabilities")).to_contain_text("Classifier “ready”")
+    expect(page.get_by_role("heading", name="goblet.ply").first).to_be_visible()
+    _drawn(page, "mesh ")
+    page.screenshot(path=tmp_path / "answer.png")
+
+    best_of = f"Any glass with stem: best of {len(list_classes()['glass_with_stem'])} (most probable)"
+    expect(page.get_by_label("Model", exact=True).locator("option:checked")).to_have_text(best_of)
+    with page.expect_request(lambda request: request.url.endswith("/v1/estimations")) as asked:
+        page.get_by_role("button", name="Rebuild it").click()
+    assert asked.value.post_data_json["class_name"] == "glass_with_stem"
+    progress = page.get_by_role("progressbar", name="Estimating parameters")
+    expect(progress.or_(page.get_by_test_id("estimation-result")).first).to_be_visible()
+
+
+def test_the_start_page_says_what_is_wrong_with_a_file(
+    new_page: Callable[..., Page], fresh_url: str, tmp_path: Path
+) -> None:
+    page = new_page(url=fresh_url)
+    broken = tmp_path / "broken.off"
+    broken.write_text("OFF\nthree four\n")
+    _drop(page, broken)
+    alert = page.get_by_role("region", name="What is this mesh?").get_by_role("alert")
+    expect(alert).to_contain_text("broken.off")
+    expect(alert).to_contain_text("line 2")
+    page.screenshot(path=tmp_path / "refused.png")
+    alert.get_by_role("button", name="Dismiss").click()
+    expect(alert).to_have_count(0)
+
+    page.route("**/goblet*.ply", lambda route: route.fulfill(status=404, body="gone"))
+    page.get_by_role("button", name="Try the goblet").click()
+    expect(alert).to_contain_text("404")
+
+
+@pytest.mark.parametrize("width", [390, 1000, 1920])
+def test_the_start_page_fits_its_window(
+    new_page: Callable[..., Page], fresh_url: str, width: int, tmp_path: Path
+) -> None:
+    page = new_page(url=fresh_url, width=width, height=844)
+    expect(page.get_by_role("heading", name="The classifier knows 2 classes")).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    drop = page.get_by_role("button", name="Drop a mesh").bounding_box()
+    assert drop is not None
+    assert drop["y"] + drop["height"] < 600, "it is seen without scrolling"
+    page.screenshot(path=tmp_path / "start.png", full_page=True)
 
 
 def test_a_slider_moves_the_mesh_and_nothing_else(new_page: Callable[..., Page], site: Site, tmp_path: Path) -> None:
@@ -292,7 +396,7 @@ def test_a_mesh_is_rebuilt_by_the_best_model_of_its_class(
     page.get_by_role("button", name="Estimate again").click()
     with page.expect_request(lambda request: request.url.endswith("/v1/estimations")) as asked:
         page.get_by_label("Model", exact=True).select_option("Any chair: best of 2")
-        page.get_by_role("button", name="Estimate parameters").click()
+        page.get_by_role("button", name="Rebuild it").click()
     assert asked.value.post_data_json["class_name"] == "chair"
     expect(page).not_to_have_url(re.compile(accepted["id"]))
     expect(result).to_be_visible()
@@ -331,6 +435,9 @@ def test_from_an_unknown_mesh_to_its_parameters(new_page: Callable[..., Page], l
     stage = _drawn(page, "mesh ")
     query_alone = _picture(stage, tmp_path / "query.png")
 
+    # What it is was asked at once; more can be asked for.
+    expect(page.get_by_test_id("probabilities")).to_contain_text("Classifier “test”")
+    page.get_by_role("button", name="Classify again").click()
     page.get_by_text("How it learned").click()
     expect(page.get_by_role("img", name="Loss by epoch").locator("polyline")).to_have_count(2)
     expect(page.get_by_text("of the held-out variations get their class")).to_be_visible()
@@ -338,7 +445,6 @@ def test_from_an_unknown_mesh_to_its_parameters(new_page: Callable[..., Page], l
     page.screenshot(path=tmp_path / "learning.png")
     page.get_by_role("button", name="Classify", exact=True).click()
     probabilities = page.get_by_test_id("probabilities")
-    expect(probabilities).to_be_visible()
     expect(page.get_by_test_id("fits").get_by_role("listitem").first).to_contain_text("fitted")
     expect(probabilities.get_by_role("listitem").first).to_contain_text("Lamp")
     expect(page.get_by_test_id("answer")).to_contain_text("Lamp")  # as the class, or as the nearest one
@@ -350,7 +456,7 @@ def test_from_an_unknown_mesh_to_its_parameters(new_page: Callable[..., Page], l
     expect(page.get_by_label("Model", exact=True).locator("option:checked")).to_have_text("Lamp (most probable)")
 
     page.get_by_label("Unit of the file").select_option("mm")
-    page.get_by_role("button", name="Estimate parameters").click()
+    page.get_by_role("button", name="Rebuild it").click()
     progress = page.get_by_role("progressbar", name="Estimating parameters")
     result = page.get_by_test_id("estimation-result")
     expect(progress.or_(result).first).to_be_visible()

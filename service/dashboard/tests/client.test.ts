@@ -70,6 +70,12 @@ describe("requests", () => {
     expect(await requests[0]?.json()).toMatchObject({ collection_id: "c", class_name: "fish", evidence: "panorama" });
   });
 
+  it("name no classifier where the ready one is to be asked", async () => {
+    const { api, requests } = fakeService(() => json({ id: "c" }, 202));
+    await api.classify({ meshId: "m", classifierId: null, fit: false });
+    expect(await requests[0]?.json()).toMatchObject({ mesh_id: "m", classifier_id: null });
+  });
+
   it("give back the values that a variation was made with", async () => {
     const { api, requests } = fakeService(
       () => new Response(new Uint8Array([1, 2, 3]), { headers: { "X-Shapewright-Values": '{"stem_length": 1.5}' } }),

@@ -172,7 +172,8 @@ export function createApi(baseUrl: string, fetcher?: (request: Request) => Promi
       return body(http.GET("/v1/classifications", { params: { query: page } }));
     },
 
-    async classify(input: { meshId: string; classifierId: string; fit: boolean }): Promise<Accepted> {
+    /** Ask what a mesh is; without a classifier's id the ready one is asked. */
+    async classify(input: { meshId: string; classifierId: string | null; fit: boolean }): Promise<Accepted> {
       const { meshId, classifierId, fit } = input;
       return body(
         http.POST("/v1/classifications", {

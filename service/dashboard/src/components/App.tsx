@@ -1,13 +1,13 @@
-import { useCallback, useRef, useState } from "react";
+import { useRef } from "react";
 
-import { useModels, useUploadMesh, useUploadModel } from "../api/queries";
+import { useModels } from "../api/queries";
 import { useCollectionSession } from "../hooks/useCollectionSession";
+import { useFirstQuestion } from "../hooks/useFirstQuestion";
 import { useMeshSession } from "../hooks/useMeshSession";
 import { useModelSession } from "../hooks/useModelSession";
-import { navigate, useRoute } from "../hooks/useRoute";
-import { byClass } from "../lib/classes";
+import { useRoute } from "../hooks/useRoute";
 import { count, humanize } from "../lib/format";
-import { MESH_ACCEPT, isModelDocument } from "../lib/meshFiles";
+import { MESH_ACCEPT } from "../lib/meshFiles";
 import { CollectionForm } from "./CollectionForm";
 import { CollectionInspector } from "./CollectionInspector";
 import { CollectionList } from "./CollectionList";
@@ -22,22 +22,19 @@ import { ModelInspector } from "./ModelInspector";
 import { ModelList } from "./ModelList";
 import { Problem } from "./Problem";
 import { Stage } from "./Stage";
+import { StartPage } from "./StartPage";
 
 /** The one page: what there is on the left, a view of it in the middle, what can be done with it on the right. */
 export function App() {
   const route = useRoute();
   const models = useModels();
-  const upload = useUploadMesh();
-  const uploadModel = useUploadModel();
+  const question = useFirstQuestion();
   const picker = useRef<HTMLInputElement>(null);
-  const [uploadError, setUploadError] = useState<{ error: unknown; fileName: string } | null>(null);
+  const choose = () => picker.current?.click();
 
+  const isHome = route.kind === "home";
   const linkedModel = route.kind === "model" ? route.id : null;
-  // Without anything in the address the first model is shown, so that the page never opens on an empty stage.
-  const model =
-    route.kind === "home"
-      ? (byClass(models.data)[0]?.models[0] ?? null)
-      : (models.data?.find(({ id }) => id === linkedModel) ?? null);
+  const model = models.data?.find(({ id }) => id === linkedModel) ?? null;
   const modelMissing = linkedModel !== null && models.isSuccess && model === null;
   const modelSession = useModelSession(model, route.kind === "model" ? route.values : undefined);
   const meshSession = useMeshSession(route);
@@ -45,22 +42,8 @@ export function App() {
   const residuals = meshSession.estimation?.result?.verdict?.residuals ?? null;
   const showsMesh = route.kind === "mesh" || route.kind === "estimation";
   const collectionSession = useCollectionSession(route);
+  const controls = isHome ? "start" : "inspector";
   const showsCollection = route.kind === "collection" || route.kind === "retrieval";
-
-  const { mutate: sendMesh } = upload;
-  const { mutate: sendModel } = uploadModel;
-  const receive = useCallback(
-    (file: File) => {
-      setUploadError(null);
-      const onError = (error: unknown) => setUploadError({ error, fileName: file.name });
-      if (isModelDocument(file.name)) {
-        sendModel(file, { onError, onSuccess: ({ id }) => navigate({ kind: "model", id }) });
-      } else {
-        sendMesh(file, { onError, onSuccess: ({ id }) => navigate({ kind: "mesh", id }) });
-      }
-    },
-    [sendMesh, sendModel],
-  );
 
   const stage = showsMesh
     ? {
@@ -84,22 +67,23 @@ export function App() {
       };
 
   return (
-    <div className="page">
-      <a className="skip-link" href="#inspector" onClick={(event) => {
+    <div className="page" data-view={isHome ? "home" : "work"}>
+      <a className="skip-link" href={`#${controls}`} onClick={(event) => {
         event.preventDefault();
-        document.getElementById("inspector")?.focus();
+        document.getElementById(controls)?.focus();
       }}>
         Skip to the controls
       </a>
       <Header />
       <aside className="library" aria-label="Library">
-        <ModelList selectedId={showsMesh || showsCollection ? null : (model?.id ?? null)} />
+        <ModelList selectedId={model?.id ?? null} />
         <MeshList
           selectedId={showsMesh ? meshSession.meshId : null}
-          onChoose={() => picker.current?.click()}
-          uploading={upload.isPending ? upload.variables.name : null}
-          uploadError={uploadError}
-          onDismissError={() => setUploadError(null)}
+          onChoose={choose}
+          isHome={isHome}
+          busy={question.busy}
+          failure={question.failure}
+          onDismiss={question.dismissFailure}
         />
         <CollectionList selectedId={collectionSession.collectionId} />
         <input
@@ -111,13 +95,21 @@ export function App() {
           aria-label="Mesh file"
           onChange={(event) => {
             const file = event.target.files?.[0];
-            if (file) receive(file);
+            if (file) void question.receive(file);
             event.target.value = "";
           }}
         />
       </aside>
       <main className="centre">
-        {showsCollection ? (
+        {isHome ? (
+          <StartPage
+            onChoose={choose}
+            onSample={() => void question.receiveSample()}
+            busy={question.busy}
+            failure={question.failure}
+            onDismiss={question.dismissFailure}
+          />
+        ) : showsCollection ? (
           <ContactSheet retrieval={collectionSession.retrieval} />
         ) : (
           <Stage
@@ -131,9 +123,9 @@ export function App() {
             }
           />
         )}
-        <JobList />
+        <JobList hideEmpty={isHome} />
       </main>
-      <aside className="panel" id="inspector" tabIndex={-1} aria-label="Controls">
+      <aside className="panel" id="inspector" hidden={isHome} tabIndex={-1} aria-label="Controls">
         {showsCollection ? (
           collectionSession.isNew ? (
             <CollectionForm />
@@ -155,6 +147,7 @@ export function App() {
               key={meshSession.mesh.id}
               mesh={meshSession.mesh}
               classifierId={meshSession.classifierId}
+              unaskedError={question.unaskedError(meshSession.mesh.id)}
               onClassifier={meshSession.setClassifier}
               foundClass={meshSession.foundClass}
               estimation={meshSession.estimation}
@@ -178,11 +171,9 @@ export function App() {
           />
         ) : models.isPending ? (
           <PanelSkeleton />
-        ) : (
-          <Welcome />
-        )}
+        ) : null}
       </aside>
-      <DropTarget onFile={receive} />
+      <DropTarget onFile={(file) => void question.receive(file)} />
     </div>
   );
 }
@@ -193,19 +184,5 @@ function PanelSkeleton() {
       <div className="skeleton skeleton-row" />
       <div className="skeleton skeleton-block" />
     </div>
-  );
-}
-
-function Welcome() {
-  return (
-    <section className="inspector">
-      <h2>How it goes</h2>
-      <ol className="welcome">
-        <li>Add procedural models: JSON documents, one or several for each class of objects.</li>
-        <li>Train a classifier on them. Their random variations are all it needs.</li>
-        <li>Upload an unknown mesh, ask what it is, and let the models of its class rebuild it.</li>
-        <li>Or index many meshes, and find those of a class.</li>
-      </ol>
-    </section>
   );
 }

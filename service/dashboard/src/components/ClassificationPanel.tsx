@@ -1,6 +1,6 @@
 import { useState } from "react";
 
-import { useClassifications, useClassify } from "../api/queries";
+import { useClassifications, useClassifiers, useClassify } from "../api/queries";
 import type { Classification } from "../api/types";
 import { useJob } from "../hooks/useJob";
 import { count, duration, humanize, percent, significant } from "../lib/format";
@@ -13,6 +13,7 @@ interface ClassificationPanelProps {
   meshId: string;
   classifierId: string | null;
   onClassifier: (id: string) => void;
+  unaskedError: unknown;
 }
 
 /** The newest classification of a mesh, whatever its state. */
@@ -26,8 +27,10 @@ export function newestOf<Item extends { mesh_id: string; created_at: string }>(
 }
 
 /** Which class the mesh belongs to, with the probability of each. */
-export function ClassificationPanel({ meshId, classifierId, onClassifier }: ClassificationPanelProps) {
+export function ClassificationPanel(props: ClassificationPanelProps) {
+  const { meshId, classifierId, onClassifier, unaskedError } = props;
   const classifications = useClassifications();
+  const classifiers = useClassifiers();
   const classify = useClassify();
   const newest = newestOf(classifications.data?.items, meshId);
   const live = useJob(newest && newest.state !== "succeeded" ? newest.job_id : null);
@@ -36,6 +39,7 @@ export function ClassificationPanel({ meshId, classifierId, onClassifier }: Clas
   const running = newest !== undefined && (newest.state === "queued" || newest.state === "running");
 
   const answered = Boolean(newest?.result);
+  const classifier = classifiers.data?.items.find(({ id }) => id === newest?.classifier_id);
 
   return (
     <section className="step" aria-labelledby="classify-title">
@@ -49,10 +53,10 @@ export function ClassificationPanel({ meshId, classifierId, onClassifier }: Clas
           </button>
         )}
       </div>
-      {(!answered || again) && (
+      {!running && (!answered || again) && (
         <>
           <ClassifierPicker selectedId={classifierId} onSelect={onClassifier} />
-          {classifierId !== null && !running && (
+          {classifierId !== null && (
             <>
               <label className="check">
                 <input type="checkbox" checked={fit} onChange={(event) => setFit(event.target.checked)} />
@@ -71,12 +75,13 @@ export function ClassificationPanel({ meshId, classifierId, onClassifier }: Clas
         </>
       )}
       {classify.error && <Problem error={classify.error} onDismiss={() => classify.reset()} />}
+      {Boolean(unaskedError) && newest === undefined && <Problem error={unaskedError} />}
       {newest && newest.state !== "succeeded" && <JobProgress live={live} label="Classifying" />}
       {newest?.state === "cancelled" && <p className="muted">The last classification was cancelled.</p>}
       {newest?.result && (
         <>
           <Verdict result={newest.result} />
-          <Probabilities result={newest.result} />
+          <Probabilities result={newest.result} classifier={classifier?.name ?? null} />
           {newest.result.fits && <Fits fits={newest.result.fits} />}
         </>
       )}
@@ -137,7 +142,7 @@ function Pictures({ url, views }: { url: string; views: number }) {
   );
 }
 
-function Probabilities({ result }: { result: Result }) {
+function Probabilities({ result, classifier }: { result: Result; classifier: string | null }) {
   const shown = result.probabilities.slice(0, SHOWN_CLASSES);
   const hidden = result.probabilities.length - shown.length;
   return (
@@ -154,7 +159,8 @@ function Probabilities({ result }: { result: Result }) {
         ))}
       </ul>
       <p className="hint">
-        Mean of {result.per_view.length} views, {duration(result.seconds)}
+        {classifier !== null && `Classifier “${classifier}”: `}mean of {result.per_view.length} views,{" "}
+        {duration(result.seconds)}
         {hidden > 0 && `; ${hidden} less likely classes not shown`}
       </p>
     </div>

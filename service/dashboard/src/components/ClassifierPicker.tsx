@@ -2,9 +2,9 @@ import { useState } from "react";
 
 import { useClassifiers, useModels, useTrain } from "../api/queries";
 import { isTerminal } from "../api/types";
-import type { Classifier } from "../api/types";
 import { useJob } from "../hooks/useJob";
 import { newestVersions } from "../lib/classes";
+import { usableClassifiers } from "../lib/classifiers";
 import { count } from "../lib/format";
 import { JobProgress } from "./JobProgress";
 import { LearningCurves } from "./LearningCurves";
@@ -23,13 +23,6 @@ const EFFORTS = [
 ] as const;
 
 type Effort = (typeof EFFORTS)[number];
-
-/** Classifiers that can be used, the newest first. */
-export function usableClassifiers(classifiers: Classifier[] | undefined): Classifier[] {
-  return (classifiers ?? [])
-    .filter((classifier) => classifier.state === "succeeded")
-    .toSorted((a, b) => b.created_at.localeCompare(a.created_at));
-}
 
 export function ClassifierPicker({ selectedId, onSelect }: ClassifierPickerProps) {
   const classifiers = useClassifiers();

@@ -2,8 +2,9 @@ import { useState } from "react";
 
 import { useClassifiers, useCreateCollection, useMeshes } from "../api/queries";
 import { navigate } from "../hooks/useRoute";
+import { usableClassifiers } from "../lib/classifiers";
 import { count } from "../lib/format";
-import { ClassifierPicker, usableClassifiers } from "./ClassifierPicker";
+import { ClassifierPicker } from "./ClassifierPicker";
 import { Problem } from "./Problem";
 
 /** Choose meshes and a classifier, and have them indexed. */

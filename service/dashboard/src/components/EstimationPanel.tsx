@@ -131,7 +131,7 @@ export function EstimationPanel(props: EstimationPanelProps) {
             className="button"
             disabled={target === null || estimate.isPending}
           >
-            {estimate.isPending ? "Starting…" : "Estimate parameters"}
+            {estimate.isPending ? "Starting…" : "Rebuild it"}
           </button>
         </form>
       )}

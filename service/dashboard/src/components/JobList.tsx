@@ -7,7 +7,7 @@ import { formatRoute } from "../lib/route";
 import { Problem } from "./Problem";
 
 /** The newest jobs; drawing a thumbnail is only worth a line while it runs or when it failed. */
-export function JobList() {
+export function JobList({ hideEmpty = false }: { hideEmpty?: boolean }) {
   const jobs = useJobs();
   const classifications = useClassifications();
   const now = useNow(2000);
@@ -15,6 +15,7 @@ export function JobList() {
     .filter((job) => job.kind !== "render_thumbnail" || job.state === "failed" || job.state === "running")
     .toSorted((a, b) => b.created_at.localeCompare(a.created_at))
     .slice(0, 20);
+  if (hideEmpty && shown.length === 0 && !jobs.error) return null;
   return (
     <section className="jobs" aria-labelledby="jobs-title">
       <h2 id="jobs-title">Recent jobs</h2>

@@ -7,6 +7,8 @@ interface MeshInspectorProps {
   mesh: Mesh;
   classifierId: string | null;
   onClassifier: (id: string) => void;
+  /** Why it was not asked what the mesh is when it was uploaded; `null` if it was. */
+  unaskedError: unknown;
   foundClass: string | null;
   estimation: Estimation | undefined;
   estimations: Estimation[];
@@ -17,7 +19,7 @@ interface MeshInspectorProps {
 
 /** What is known about an unknown mesh, and the two questions that can be asked about it. */
 export function MeshInspector(props: MeshInspectorProps) {
-  const { mesh, classifierId, onClassifier, foundClass, estimation, estimations, answer, onAnswer } = props;
+  const { mesh, classifierId, onClassifier, unaskedError, foundClass, estimation, estimations, answer, onAnswer } = props;
   const isCloud = mesh.kind === "point_cloud";
   return (
     <section className="inspector" aria-label="Mesh">
@@ -39,7 +41,12 @@ export function MeshInspector(props: MeshInspectorProps) {
           </div>
         </dl>
       </div>
-      <ClassificationPanel meshId={mesh.id} classifierId={classifierId} onClassifier={onClassifier} />
+      <ClassificationPanel
+        meshId={mesh.id}
+        classifierId={classifierId}
+        onClassifier={onClassifier}
+        unaskedError={unaskedError}
+      />
       {isCloud ? (
         <p className="muted">
           A point cloud can be classified, and looked up in a collection. Rebuilding needs a mesh with faces.

@@ -8,38 +8,41 @@ import { Problem } from "./Problem";
 interface MeshListProps {
   selectedId: string | null;
   onChoose: () => void;
-  uploading: string | null;
-  uploadError: { error: unknown; fileName: string } | null;
-  onDismissError: () => void;
+  /** The start page says itself what is being done, and has a place to drop meshes. */
+  isHome: boolean;
+  busy: string | null;
+  failure: { error: unknown; fileName: string } | null;
+  onDismiss: () => void;
 }
 
 /** The uploaded meshes, and the button that adds one. */
-export function MeshList({ selectedId, onChoose, uploading, uploadError, onDismissError }: MeshListProps) {
+export function MeshList({ selectedId, onChoose, isHome, busy, failure, onDismiss }: MeshListProps) {
   const meshes = useMeshes();
   const items = meshes.data?.pages.flatMap((page) => page.items) ?? [];
   return (
     <section className="library-section library-meshes" aria-labelledby="meshes-title">
       <div className="section-head">
         <h2 id="meshes-title">Meshes</h2>
-        <button type="button" className="quiet" onClick={onChoose} disabled={uploading !== null}>
+        <button type="button" className="quiet" onClick={onChoose} disabled={busy !== null}>
           <Icon name="upload" size={14} /> Upload mesh
         </button>
       </div>
-      {uploading !== null && (
+      {!isHome && busy !== null && (
         <p className="uploading" role="status">
-          <span className="spinner" aria-hidden="true" /> Uploading {uploading}…
+          <span className="spinner" aria-hidden="true" /> {busy}
         </p>
       )}
-      {uploadError && (
-        <Problem error={uploadError.error} onDismiss={onDismissError}>
+      {!isHome && failure && (
+        <Problem error={failure.error} onDismiss={onDismiss}>
           <p className="problem-where">
-            File: <code>{uploadError.fileName}</code>
+            File: <code>{failure.fileName}</code>
           </p>
         </Problem>
       )}
       {meshes.isPending && <div className="skeleton skeleton-row" role="status" aria-label="Loading meshes" />}
       {meshes.error && !meshes.data && <Problem error={meshes.error} onRetry={() => void meshes.refetch()} />}
-      {meshes.isSuccess && items.length === 0 && uploading === null && (
+      {meshes.isSuccess && items.length === 0 && isHome && <p className="muted">None yet.</p>}
+      {meshes.isSuccess && items.length === 0 && !isHome && busy === null && (
         <button type="button" className="dropzone" onClick={onChoose}>
           <Icon name="mesh" size={22} />
           <span>

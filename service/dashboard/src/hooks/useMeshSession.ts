@@ -1,9 +1,9 @@
 import { useMemo, useState } from "react";
 
 import { useClassifications, useClassifiers, useEstimation, useEstimations, useGlb, useMesh } from "../api/queries";
+import { usableClassifiers } from "../lib/classifiers";
 import type { Route } from "../lib/route";
 import { newestOf } from "../components/ClassificationPanel";
-import { usableClassifiers } from "../components/ClassifierPicker";
 import { modelUp } from "../three/up";
 import { useFitView } from "./useFitView";
 
