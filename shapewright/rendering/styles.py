@@ -16,8 +16,13 @@ vertices that no face uses do not count."""
 FRAMINGS: Final[tuple[Framing, ...]] = get_args(Framing)
 
 ImageStyle = Literal["edges", "shaded", "lambert", "depth", "normals", "fused"]
-"""``edges``: grey fill with dark silhouettes, creases and steps, what classes are learned in.
-``shaded``: lit, for people."""
+"""Looks of triangles drawn with OpenGL. ``edges``: gray fill with dark silhouettes, creases and steps; ``fused``:
+edges, depth and slope in one picture; ``shaded``: lit, for people."""
+
+PictureStyle = Literal[ImageStyle, "splats"]
+"""Looks that a classifier can learn: those of triangles, and ``splats``, see :mod:`shapewright.rendering.splats`."""
+
+PICTURE_STYLES: Final[tuple[PictureStyle, ...]] = get_args(PictureStyle)
 
 
 @dataclass(frozen=True)
