@@ -113,13 +113,14 @@ def load_meshes(paths: Sequence[str | Path], *, jobs: int = 1) -> Iterator[Trian
 def _load_each(
     load_one: Callable[..., _Read], paths: Sequence[str | Path], jobs: int
 ) -> Iterator[_Read | MeshFileError]:
-    def load(path: str | Path) -> _Read | MeshFileError:
-        try:
-            return load_one(path, reader=reader)
-        except MeshFileError as error:  # without its traceback, which holds the content of the file
-            return MeshFileError(error.message, where=error.where)
-
     with MeshReader(kept=jobs) as reader, ThreadPoolExecutor(jobs) as pool:
+
+        def load(path: str | Path) -> _Read | MeshFileError:
+            try:
+                return load_one(path, reader=reader)
+            except MeshFileError as error:  # without its traceback, which holds the content of the file
+                return MeshFileError(error.message, where=error.where)
+
         coming: deque[Future[_Read | MeshFileError]] = deque()
         try:
             for path in paths:
