@@ -49,8 +49,9 @@ class TrainingSettingsIn(InBody):
     batch_size: Annotated[int, Field(ge=1, le=65_536)] | None = None
     seed: Seed | None = None
     backbone: Annotated[str, Field(max_length=100)] | None = None
-    style: Literal["edges", "shaded", "lambert", "depth", "normals", "fused"] | None = Field(
-        default=None, description="Look of the pictures."
+    style: Literal["edges", "shaded", "lambert", "depth", "normals", "fused", "splats"] | None = Field(
+        default=None,
+        description="Look of the pictures: of points (splats, which scans and point clouds need), or of triangles.",
     )
     framing: Literal["paper", "sphere"] | None = Field(
         default=None,
@@ -61,6 +62,13 @@ class TrainingSettingsIn(InBody):
         default=None, description="Half the side of a picture, in units of the scaled object."
     )
     subdivision_steps: Annotated[int, Field(ge=0, le=3)] | None = None
+    broken: Annotated[float, Field(ge=0, le=0.7)] | None = Field(
+        default=None, description="Share of the variations that are broken as scans and careless exports are."
+    )
+    breaks: (
+        Annotated[list[Literal["noise", "holes", "one_sided", "rounded", "sparse", "blocks"]], Field(max_length=6)]
+        | None
+    ) = Field(default=None, description="Ways to break them.")
 
     def checked(self) -> dict[str, Any]:
         """The settings that were given, held against the library's own rules.
@@ -72,7 +80,7 @@ class TrainingSettingsIn(InBody):
 
         given = self.model_dump(exclude_none=True)
         try:
-            TrainingSettings(**given)
+            TrainingSettings.from_dict(given)
         except ClassifierError as error:
             raise ClassifierError(error.message, where=f"settings.{error.where}") from None
         return given

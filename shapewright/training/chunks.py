@@ -19,22 +19,26 @@ from itertools import islice
 from typing import Final
 
 import numpy as np
-from jaxtyping import Float16, Float32, UInt8
+from jaxtyping import Bool, Float16, Float32, UInt8
 
+from shapewright.classification.pictures import draw
+from shapewright.classification.readings import VERSION as READINGS_VERSION
+from shapewright.classification.readings import plain_reading
 from shapewright.classification.series import SERIES, series_generators
-from shapewright.mesh import TriangleMesh
+from shapewright.mesh import PointCloud, TriangleMesh
 from shapewright.network.backbone import Backbone
 from shapewright.network.features import FeatureExtractor
 from shapewright.progress import NULL_PROGRESS, Progress
-from shapewright.rendering.images import render_images
 from shapewright.rendering.views import random_views
 from shapewright.training.array_store import ArrayStore
+from shapewright.training.broken.breaking import VERSION as BREAKS_VERSION
+from shapewright.training.broken.breaking import broken, is_broken
 from shapewright.training.settings import TrainingSettings
 from shapewright.training.sources import MESHES_VERSION, Source
 
 BLOCK: Final = 8
 """Meshes that are drawn and described together; bounds the memory."""
-PICTURES_VERSION: Final = 1
+PICTURES_VERSION: Final = 2
 """Raise it when the renderer draws something else for the same settings."""
 _DESCRIBING_THREADS: Final = 2
 _NICENESS: Final = 10
@@ -56,8 +60,19 @@ class Chunk:
     count: int
 
     def meshes(self, settings: TrainingSettings) -> Iterator[TriangleMesh]:
-        """The meshes, one after the other."""
+        """The whole meshes, one after the other."""
         return self.source.meshes(self._generators(settings)[0], self.count, settings.subdivision_steps)
+
+    def objects(self, settings: TrainingSettings) -> Iterator[TriangleMesh | PointCloud]:
+        """The meshes as they are learned from, some of them broken, one after the other."""
+        for number, (mesh, is_broken_one) in enumerate(zip(self.meshes(settings), self.broken(settings), strict=True)):
+            rng = np.random.default_rng([settings.seed, int(self.source.digest[:16], 16), self.number, number])
+            yield broken(mesh, settings.breaks, rng) if is_broken_one else mesh
+
+    def broken(self, settings: TrainingSettings) -> Bool[np.ndarray, " M"]:
+        """Which of the meshes are broken."""
+        share = settings.broken if settings.breaks else 0.0
+        return np.array([is_broken(number, share) for number in range(self.count)])
 
     def views(self, settings: TrainingSettings) -> tuple[np.ndarray, np.ndarray]:
         """Rotations (count, views, 3, 3) and scales (count, views) of the pictures."""
@@ -77,27 +92,34 @@ def chunks_of(source: Source, count: int) -> list[Chunk]:
 
 def features_key(chunk: Chunk, settings: TrainingSettings, backbone: Backbone) -> str:
     """Where the features of a chunk's pictures are stored: all that they depend on."""
-    look = {name: settings.to_dict()[name] for name in _PICTURE_SETTINGS} | {"version": PICTURES_VERSION}
-    rendering = hashlib.sha256(json.dumps(look, sort_keys=True).encode()).hexdigest()[:12]
+    rendering = _digest(_PICTURE_SETTINGS, settings, PICTURES_VERSION)
     return f"features/{backbone.key}/{rendering}/{_series_name(chunk, settings)}"
 
 
 def descriptors_key(chunk: Chunk, settings: TrainingSettings) -> str:
-    """Where the panorama descriptors of a chunk's meshes are stored."""
+    """Where the panorama descriptors of a chunk's objects are stored."""
     from shapewright.distances.descriptor_files import descriptor_version
 
-    return f"panoramas/v{descriptor_version()}-steps{settings.subdivision_steps}/{_series_name(chunk, settings)}"
+    objects = _digest(_OBJECT_SETTINGS, settings, READINGS_VERSION)
+    return f"panoramas/v{descriptor_version()}-{objects}/{_series_name(chunk, settings)}"
 
 
+_OBJECT_SETTINGS: Final = ("subdivision_steps", "broken", "breaks")
 _PICTURE_SETTINGS: Final = (
+    *_OBJECT_SETTINGS,
     "images_per_variation",
     "image_size",
     "scale_range",
     "style",
     "framing",
     "window",
-    "subdivision_steps",
 )
+
+
+def _digest(names: Sequence[str], settings: TrainingSettings, version: int) -> str:
+    """Return what tells settings apart of which something depends."""
+    values = {name: settings.to_dict()[name] for name in names} | {"versions": [version, BREAKS_VERSION]}
+    return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()[:12]
 
 
 def _series_name(chunk: Chunk, settings: TrainingSettings) -> str:
@@ -136,7 +158,7 @@ def store_chunk(
     rotations, scales = chunk.views(settings)
     features: list[Float16[np.ndarray, "N D"]] = []
     panoramas: list[Float32[np.ndarray, "N D"]] = []
-    meshes = chunk.meshes(settings)
+    objects = chunk.objects(settings)
     with _describing_pool() as pool:
         pending: deque[tuple[Future[np.ndarray] | None, Future[np.ndarray] | None]] = deque()
 
@@ -148,7 +170,7 @@ def store_chunk(
                 panoramas.append(described_block.result())
 
         done = 0
-        while block := list(islice(meshes, BLOCK)):
+        while block := list(islice(objects, BLOCK)):
             progress.report(done / chunk.count, f"{chunk.source.name}: {done} of {chunk.count}")
             at = slice(done, done + len(block))
             images = _pictures(block, rotations[at], scales[at], settings) if needs_features else None
@@ -187,31 +209,23 @@ def _describing_pool() -> Iterator[ThreadPoolExecutor]:
 
 
 def _pictures(
-    meshes: Sequence[TriangleMesh], rotations: np.ndarray, scales: np.ndarray, settings: TrainingSettings
+    objects: Sequence[TriangleMesh | PointCloud], rotations: np.ndarray, scales: np.ndarray, settings: TrainingSettings
 ) -> UInt8[np.ndarray, "N H W 3"]:
-    return render_images(
-        meshes,
-        None,
-        rotations.reshape(-1, 3, 3),
-        scales.reshape(-1),
-        objects=np.repeat(np.arange(len(meshes)), settings.images_per_variation),
-        size=settings.image_size,
-        style=settings.style,
-        window=settings.window,
-        framing=settings.framing,
-    )
+    shown = np.repeat(np.arange(len(objects)), settings.images_per_variation)
+    return draw(objects, rotations.reshape(-1, 3, 3), scales.reshape(-1), settings.look, shown=shown)
 
 
-def _panoramas(meshes: Sequence[TriangleMesh]) -> Float32[np.ndarray, "N D"]:
+def _panoramas(objects: Sequence[TriangleMesh | PointCloud]) -> Float32[np.ndarray, "N D"]:
     import numba
 
     from shapewright.distances.panorama import panorama_descriptor
 
     numba.set_num_threads(1)  # of this thread: the other cores draw
-    return np.stack([panorama_descriptor(mesh.vertices, mesh.faces).to_array() for mesh in meshes])
+    surfaces = [plain_reading(one).described_surface() for one in objects]
+    return np.stack([panorama_descriptor(surface.vertices, surface.faces).to_array() for surface in surfaces])
 
 
 def chunk_images(chunk: Chunk, settings: TrainingSettings) -> UInt8[np.ndarray, "N H W 3"]:
     """The learning pictures of a chunk, those of one mesh together: to look at."""
     rotations, scales = chunk.views(settings)
-    return _pictures(list(chunk.meshes(settings)), rotations, scales, settings)
+    return _pictures(list(chunk.objects(settings)), rotations, scales, settings)

@@ -53,6 +53,10 @@ class Share:
         """The share as units of work."""
         return chunks_of(self.source, self.count)
 
+    def broken(self, settings: TrainingSettings) -> Bool[np.ndarray, " M"]:
+        """Which of the meshes are broken."""
+        return np.concatenate([chunk.broken(settings) for chunk in self.chunks])
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -207,7 +211,7 @@ def _held_out(labels: Int[np.ndarray, " M"], settings: TrainingSettings) -> Bool
 
 
 def load_descriptors(plan: Plan, settings: TrainingSettings, store: ArrayStore) -> Float[np.ndarray, "M D"]:
-    """Join the stored panorama descriptors of a plan, one row a mesh.
+    """Join the stored panorama descriptors of a plan, one row an object.
 
     Raises:
         ClassifierError: a chunk is not stored.

@@ -10,11 +10,11 @@ from shapewright.training.settings import TrainingSettings
 
 
 def exemplars_of(plan: Plan, descriptors: Float[np.ndarray, "A D"], settings: TrainingSettings) -> Exemplars:
-    """Return the exemplars of a plan's classes.
+    """Return the exemplars of a plan's classes: their whole variations.
 
     Args:
         plan: the sources, and how many meshes each one gave.
-        descriptors: of all meshes of the plan, see :func:`shapewright.training.dataset.load_descriptors`.
+        descriptors: of all objects of the plan, see :func:`shapewright.training.dataset.load_descriptors`.
         settings: of the training.
     """
     known = [share for share in plan.shares if share.label < len(plan.class_names)]
@@ -30,7 +30,8 @@ def exemplars_of(plan: Plan, descriptors: Float[np.ndarray, "A D"], settings: Tr
         numbers=np.concatenate([np.arange(count) for count in counts]),
         descriptors=descriptors[: sum(counts)],
     )
-    return every if settings.exemplars_per_class == 0 else representatives(every, settings.exemplars_per_class)
+    whole = every.taken(np.flatnonzero(~np.concatenate([share.broken(settings) for share in known])))
+    return whole if settings.exemplars_per_class == 0 else representatives(whole, settings.exemplars_per_class)
 
 
 def representatives(exemplars: Exemplars, per_class: int) -> Exemplars:

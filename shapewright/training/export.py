@@ -52,14 +52,7 @@ def classifier_metadata(
             "weights_sha256": backbone.weights_sha256,
         },
         "preprocessing": f"in the graph: uint8 NHWC, {backbone.preprocessing}",
-        "rendering": {
-            "style": settings.style,
-            "image_size": settings.image_size,
-            "framing": settings.framing,
-            "window": settings.window,
-            "scale_range": list(settings.scale_range),
-            "normalisation": NORMALISATIONS[settings.framing],
-        },
+        "rendering": {**settings.look.to_dict(), "normalisation": NORMALISATIONS[settings.framing]},
         "known": {
             name: None if curve is None else curve.to_dict()
             for name, curve in (("pictures", calibration.pictures), ("geometry", calibration.geometry))

@@ -4,9 +4,11 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from shapewright.classification.look import Look
 from shapewright.errors import ClassifierError
 from shapewright.network.backbone import BACKBONES, DEFAULT_BACKBONE
-from shapewright.rendering.styles import FRAMINGS, SCALE_RANGE, STYLES, WINDOW, Framing, ImageStyle
+from shapewright.rendering.styles import SCALE_RANGE, WINDOW, Framing, PictureStyle
+from shapewright.training.broken import BREAK_NAMES, MOST_BROKEN
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,9 @@ class TrainingSettings:
         framing: how an object is put into its picture.
         window: half the side of a picture in units of the scaled object.
         subdivision_steps: of the variations' surfaces.
+        broken: share of the variations that are broken before they are drawn, as scans and careless exports are.
+        breaks: ways to break them, the hardest more often, among
+            :data:`shapewright.training.broken.BREAK_NAMES`.
 
     Raises:
         ClassifierError: a setting that makes no sense; ``where`` names it.
@@ -60,10 +65,12 @@ class TrainingSettings:
     batch_size: int = 256
     seed: int = 0
     backbone: str = DEFAULT_BACKBONE
-    style: ImageStyle = "fused"
+    style: PictureStyle = "splats"
     framing: Framing = "sphere"
     window: float = 1.0
     subdivision_steps: int = 2
+    broken: float = 0.6
+    breaks: tuple[str, ...] = BREAK_NAMES
 
     def __post_init__(self) -> None:
         if self.backbone not in BACKBONES:
@@ -75,10 +82,6 @@ class TrainingSettings:
             "variations": (self.variations >= 2, "at least 2: one to learn from, one held out"),
             "images_per_variation": (self.images_per_variation >= 1, "at least 1"),
             "image_size": (sizes.fit(self.image_size), f"{sizes} for {self.backbone}"),
-            "scale_range": (
-                len(self.scale_range) == 2 and 0 < self.scale_range[0] <= self.scale_range[1],
-                "two positive numbers in order",
-            ),
             "negatives": (self.negatives >= 0, "not negative"),
             "exemplars_per_class": (self.exemplars_per_class >= 0, "not negative"),
             "held_out": (0 < self.held_out < 1, "between 0 and 1"),
@@ -88,14 +91,22 @@ class TrainingSettings:
             "weight_decay": (self.weight_decay >= 0, "not negative"),
             "batch_size": (self.batch_size >= 1, "at least 1"),
             "seed": (self.seed >= 0, "not negative"),
-            "style": (self.style in STYLES, f"one of {sorted(STYLES)}"),
-            "framing": (self.framing in FRAMINGS, f"one of {list(FRAMINGS)}"),
-            "window": (self.window > 0, "positive"),
             "subdivision_steps": (0 <= self.subdivision_steps <= 3, "from 0 to 3"),
+            "broken": (0 <= self.broken <= MOST_BROKEN, f"from 0 to {MOST_BROKEN}"),
+            "breaks": (
+                set(self.breaks) <= set(BREAK_NAMES) and len(set(self.breaks)) == len(self.breaks),
+                f"each of {list(BREAK_NAMES)} once at most",
+            ),
         }
         for name, (fine, expected) in checks.items():
             if not fine:
                 raise ClassifierError(f"is {getattr(self, name)!r}, must be {expected}", where=name)
+        _ = self.look  # it checks its values
+
+    @property
+    def look(self) -> Look:
+        """How pictures are drawn."""
+        return Look(self.style, self.image_size, self.framing, self.window, self.scale_range)
 
     @classmethod
     def paper(cls, **changes: Any) -> "TrainingSettings":
@@ -107,12 +118,13 @@ class TrainingSettings:
             "style": "lambert",
             "framing": "paper",
             "window": WINDOW,
+            "broken": 0.0,
         }
         return cls(**(values | changes))
 
     def to_dict(self) -> dict[str, Any]:
         """The settings as JSON values."""
-        return {**asdict(self), "scale_range": list(self.scale_range)}
+        return {**asdict(self), "scale_range": list(self.scale_range), "breaks": list(self.breaks)}
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> "TrainingSettings":
@@ -129,7 +141,8 @@ class TrainingSettings:
             default = cls.__dataclass_fields__[name].default
             numbers = (int, float) if isinstance(default, float) else int
             if isinstance(default, tuple):
-                fine = isinstance(value, (list, tuple)) and all(isinstance(end, (int, float)) for end in value)
+                kind = str if name == "breaks" else (int, float)
+                fine = isinstance(value, (list, tuple)) and all(isinstance(part, kind) for part in value)
             elif isinstance(default, bool):
                 fine = isinstance(value, bool)
             elif isinstance(default, str):
@@ -140,4 +153,6 @@ class TrainingSettings:
                 raise ClassifierError(f"is {value!r}, a value like {default!r} is expected", where=name)
         if "scale_range" in known:
             known["scale_range"] = tuple(float(end) for end in known["scale_range"])
+        if "breaks" in known:
+            known["breaks"] = tuple(known["breaks"])
         return cls(**known)

@@ -2627,9 +2627,9 @@ export interface components {
             backbone?: string | null;
             /**
              * Style
-             * @description Look of the pictures.
+             * @description Look of the pictures: of points (splats, which scans and point clouds need), or of triangles.
              */
-            style?: ("edges" | "shaded" | "lambert" | "depth" | "normals" | "fused") | null;
+            style?: ("edges" | "shaded" | "lambert" | "depth" | "normals" | "fused" | "splats") | null;
             /**
              * Framing
              * @description How an object is put into its picture: by the mean and range of its vertices (paper), or by its bounding box and farthest point.
@@ -2642,6 +2642,16 @@ export interface components {
             window?: number | null;
             /** Subdivision Steps */
             subdivision_steps?: number | null;
+            /**
+             * Broken
+             * @description Share of the variations that are broken as scans and careless exports are.
+             */
+            broken?: number | null;
+            /**
+             * Breaks
+             * @description Ways to break them.
+             */
+            breaks?: ("noise" | "holes" | "one_sided" | "rounded" | "sparse" | "blocks")[] | null;
         };
         /**
          * VerdictOut

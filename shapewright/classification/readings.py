@@ -1,0 +1,134 @@
+"""Reading a query: from a mesh or a point cloud, clean or not, to the points that are drawn and the surface that is
+compared (ours).
+
+Noise is smoothed, debris beside the object goes. Where an object may stand on the ground, there is a second reading
+without it; which of the two is right, the classes decide.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+from scipy.spatial import cKDTree
+
+from shapewright.distances.even_places import even_places
+from shapewright.errors import MeshError
+from shapewright.estimation.noise import without_noise
+from shapewright.mesh import PointCloud, TriangleMesh
+from shapewright.mesh.surfels import surfels
+from shapewright.mesh.surroundings import is_debris, is_ground
+from shapewright.rendering.splats import RADIUS, SplatCloud, splat_cloud
+
+VERSION: Final = 1
+"""Raise it when the same query is read differently."""
+SPACING: Final = 0.6
+"""Distance of neighboring points on a mesh, in radii of a disc."""
+LEAST_POINTS, MOST_POINTS = 2_000, 30_000
+"""How many points a query is drawn by, at least and at most; a point cloud may have fewer."""
+_NEIGHBORS: Final = 6
+"""Neighbors that the spacing of a point cloud is measured by."""
+_ASKED: Final = 1_000
+"""Points at which it is measured."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """One way to see a query.
+
+    Args:
+        points: on the surface, in the query's unit.
+        spacing: side of the square that each point has to itself on the surface.
+        surface: the mesh that the points lie on; ``None`` of a point cloud.
+    """
+
+    points: Float[np.ndarray, "N 3"]
+    spacing: float
+    surface: TriangleMesh | None
+
+    @property
+    def cloud(self) -> SplatCloud:
+        """What is drawn.
+
+        Raises:
+            MeshError: all points are at one place.
+        """
+        return splat_cloud(self.points, self.spacing if self.surface is None else 0.0)
+
+    def described_surface(self) -> TriangleMesh:
+        """Return what is compared: the mesh, or surfels."""
+        return surfels(self.points, self.spacing) if self.surface is None else self.surface
+
+
+def plain_reading(query: TriangleMesh | PointCloud) -> Reading:
+    """Read a query as it is; the same each time.
+
+    Raises:
+        MeshError: a mesh without area.
+    """
+    if isinstance(query, PointCloud):
+        points = query.points
+        if len(points) > MOST_POINTS:  # at random: every tenth point of a scanner's rows would be a pattern
+            points = np.random.default_rng(0).choice(points, MOST_POINTS, replace=False)
+        return Reading(points, _cloud_spacing(points), None)
+    return _mesh_reading(query)[0]
+
+
+def readings(query: TriangleMesh | PointCloud) -> list[Reading]:
+    """Read a query that may be a scan: without noise and debris, and once more without ground if it may have some.
+
+    Raises:
+        MeshError: a mesh without area.
+    """
+    if isinstance(query, PointCloud):
+        whole = plain_reading(query)
+        kept = ~is_debris(whole.points, whole.spacing)
+        first = Reading(whole.points[kept], whole.spacing, None)
+        ground = is_ground(first.points)
+        return [first] if ground is None else [first, Reading(first.points[~ground], first.spacing, None)]
+    whole, places = _mesh_reading(without_noise(query))
+    debris = is_debris(whole.points, whole.spacing)
+    first = _part(whole, places, ~debris) if debris.any() else whole
+    ground = is_ground(first.points)
+    if ground is None:
+        return [first]
+    kept = ~debris
+    kept[kept] = ~ground
+    return [first, _part(whole, places, kept)]
+
+
+def _mesh_reading(mesh: TriangleMesh) -> tuple[Reading, Int[np.ndarray, " N"]]:
+    """Read a mesh; also tell which face each point lies on."""
+    areas = mesh.face_areas
+    area = float(areas.sum())
+    if not area > 0:
+        raise MeshError("the surface has no area", where="faces")
+    used = mesh.vertices[mesh.faces[areas > 0]].reshape(-1, 3)
+    reach = 0.5 * float(np.linalg.norm(used.max(axis=0) - used.min(axis=0)))
+    count = int(np.clip(area / (SPACING * RADIUS * reach) ** 2, LEAST_POINTS, MOST_POINTS))
+    faces, weights = even_places(areas, count)
+    points = np.einsum("nk,nkd->nd", weights, mesh.vertices[mesh.faces[faces]])
+    return Reading(points, float(np.sqrt(area / count)), mesh), faces
+
+
+def _part(whole: Reading, places: Int[np.ndarray, " N"], kept: Bool[np.ndarray, " N"]) -> Reading:
+    """Return the reading of what the kept points lie on; faces without a point go with the nearest one."""
+    assert whole.surface is not None
+    votes = np.zeros(len(whole.surface.faces))
+    np.add.at(votes, places, np.where(kept, 1.0, -1.0))
+    silent = np.setdiff1d(np.arange(len(votes)), places)
+    if len(silent):
+        middles = whole.surface.triangles[silent].mean(axis=1)
+        votes[silent] = np.where(kept[cKDTree(whole.points).query(middles)[1]], 1.0, -1.0)
+    faces = whole.surface.faces[votes > 0]
+    used, renumbered = np.unique(faces, return_inverse=True)
+    surface = TriangleMesh(whole.surface.vertices[used], renumbered.reshape(-1, 3)) if len(faces) else None
+    return Reading(whole.points[kept], whole.spacing, surface)
+
+
+def _cloud_spacing(points: Float[np.ndarray, "N 3"]) -> float:
+    """Return the side of the square that a point of a surface has to itself, the median over the points."""
+    count = min(_NEIGHBORS, len(points) - 1)
+    asked = points[:: max(1, len(points) // _ASKED)]
+    distances = np.asarray(cKDTree(points).query(asked, k=count + 1)[0])[:, -1]
+    return float(np.sqrt(np.pi / count) * np.median(distances))

@@ -1,0 +1,63 @@
+"""Breaking variations at random."""
+
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+
+from shapewright.mesh import PointCloud, TriangleMesh
+from shapewright.training.broken.blocks import build_of_blocks
+from shapewright.training.broken.holes import lose_patches
+from shapewright.training.broken.noise import shake_surface
+from shapewright.training.broken.one_sided import keep_visible
+from shapewright.training.broken.rounded import round_vertices
+from shapewright.training.broken.sparse import keep_few_points
+
+VERSION: Final = 1
+"""Raise it when the same generator breaks a variation differently."""
+
+HARDEST: Final = "one_sided"
+"""What takes most from an object is drawn twice as often as the others."""
+_GOLDEN: Final = (5.0**0.5 - 1.0) / 2.0
+
+Break = Callable[[TriangleMesh, np.random.Generator], TriangleMesh | PointCloud]
+"""Takes a variation and the source of all choices, strength included; returns what is left of it."""
+
+BREAKS: Final[Mapping[str, Break]] = MappingProxyType(
+    {
+        "noise": shake_surface,
+        "holes": lose_patches,
+        "one_sided": keep_visible,
+        "rounded": round_vertices,
+        "sparse": keep_few_points,
+        "blocks": build_of_blocks,
+    }
+)
+"""Every way to break a variation by its name."""
+
+
+def is_broken(number: int, share: float) -> bool:
+    """Tell whether the variation with this number of a series is broken.
+
+    The broken ones are spread evenly, so that a short beginning of a series has its share of them. The first variation
+    is whole.
+    """
+    return (number * _GOLDEN) % 1.0 >= 1.0 - share
+
+
+def broken(mesh: TriangleMesh, breaks: Sequence[str], rng: np.random.Generator) -> TriangleMesh | PointCloud:
+    """Return a variation broken in one random way.
+
+    Args:
+        mesh: the variation.
+        breaks: names among :data:`BREAKS`; without any, the variation stays whole.
+        rng: source of all choices.
+
+    Raises:
+        MeshError: the variation has no area.
+    """
+    if not breaks:
+        return mesh
+    choices = [*breaks, *(name for name in breaks if name == HARDEST)]
+    return BREAKS[choices[int(rng.integers(len(choices)))]](mesh, rng)
