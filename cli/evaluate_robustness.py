@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cli.console import AsJson, print_json, shown_progress, stdout
-from cli.evaluate_classifier import ClassifierFile, SettingsFile, Views, shipped_classes_of
+from cli.evaluate_classifier import SettingsFile, Views, shipped_classes_of
 from cli.evaluation_options import (
     CacheFolder,
     Classes,
+    ClassifierFile,
     DatasetFolder,
     Jobs,
     Limit,

@@ -5,7 +5,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 import numpy as np
 from jaxtyping import Float, UInt8
@@ -19,18 +19,22 @@ from shapewright.classification.evidence import (
 )
 from shapewright.classification.exemplars import Exemplars
 from shapewright.classification.file_format import FORMAT, FORMAT_VERSION, METADATA_KEY
+from shapewright.classification.look import Look
+from shapewright.classification.pictures import draw
+from shapewright.classification.readings import Reading, plain_reading, readings
 from shapewright.classification.synthesis import FITTED_CLASSES, Fit, fit_class
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor
 from shapewright.errors import ClassifierError
 from shapewright.estimation.generator import InstanceGenerator
-from shapewright.mesh import TriangleMesh
+from shapewright.mesh import PointCloud, TriangleMesh
 from shapewright.network.ports import IMAGES, OPEN_PROBABILITIES, PROBABILITIES
 from shapewright.network.session import BATCH_SIZE, make_session
-from shapewright.rendering.images import render_images
-from shapewright.rendering.styles import FRAMINGS, STYLES
+from shapewright.rendering.splats import splat_images
 from shapewright.rendering.views import spread_views
 
 DEFAULT_VIEWS: Final = 10
+GROUND_PREFERENCE: Final = 0.25
+"""How much lower the best score may be without the ground than with it, for the ground to be left out all the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +112,7 @@ class Classifier:
             raise ClassifierError(f"not an ONNX file that can be loaded: {_first_line(error)}", where=where) from error
         self.metadata = _checked_metadata(self._session, where)
         self.class_names: tuple[str, ...] = tuple(self.metadata["class_names"])
-        self.image_size = int(self.metadata["rendering"]["image_size"])
+        self.look = Look.from_dict(self.metadata["rendering"])
         self.exemplars = exemplars
         if exemplars is not None:
             digests = tuple(model["digest"] for model in self.metadata["models"])
@@ -129,72 +133,64 @@ class Classifier:
         return self._run(images)[0]
 
     def render(
-        self, mesh: TriangleMesh, *, views: int = DEFAULT_VIEWS, rng: np.random.Generator | None = None
+        self, query: TriangleMesh | PointCloud, *, views: int = DEFAULT_VIEWS, rng: np.random.Generator | None = None
     ) -> UInt8[np.ndarray, "N H W 3"]:
-        """Pictures of a mesh, drawn as the learning pictures were, from directions that are spread evenly.
+        """Draw a query as the learning pictures were drawn, from directions that are spread evenly.
 
         Raises:
-            ClassifierError: fewer than one view.
-            RenderingError: no headless OpenGL.
+            ClassifierError: fewer than one view, or a point cloud where pictures need faces.
+            MeshError: the query has no area or no extent.
+            RenderingError: no headless OpenGL, where pictures need it.
         """
-        if views < 1:
-            raise ClassifierError("at least one view is needed", where="views")
-        rendering = self.metadata["rendering"]
-        low, high = rendering["scale_range"]
-        rotations, scales = spread_views(rng or np.random.default_rng(0), views, scale_range=(low, high))
-        return render_images(
-            [mesh],
-            None,
-            rotations,
-            scales,
-            objects=np.zeros(views, dtype=np.int64),
-            size=self.image_size,
-            style=rendering["style"],
-            window=float(rendering["window"]),
-            framing=rendering["framing"],
-        )
+        rotations, scales = self._views(views, rng or np.random.default_rng(0))
+        return self._sights(query)[0].images(rotations, scales)
 
     def classify(
         self,
-        mesh: TriangleMesh,
+        query: TriangleMesh | PointCloud,
+        /,
         *,
         views: int = DEFAULT_VIEWS,
         rng: np.random.Generator | None = None,
         models: Mapping[str, InstanceGenerator] | None = None,
     ) -> Classification:
-        """Draw a mesh from several sides, average the class probabilities (paper section 3.2), compare its geometry.
+        """Draw a query from several sides, average the class probabilities (paper section 3.2), compare its geometry.
+
+        An object that may stand on the ground is looked at with and without it.
 
         Args:
-            mesh: any triangle soup.
+            query: any triangle soup, or a point cloud.
             views: pictures; the paper's 10 by default.
             rng: draws rotations and scales; by default a fresh ``default_rng(0)``, so answers repeat.
             models: compiled models by digest: the most probable classes are fitted, not only compared with their
                 exemplars. It takes a second, and the parameter values come with it.
 
         Raises:
-            ClassifierError: fewer than one view, or models without exemplars.
-            MeshError: the mesh has no area, which only exemplars mind.
-            RenderingError: no headless OpenGL.
+            ClassifierError: fewer than one view, models without exemplars, or a point cloud where pictures need faces.
+            MeshError: the query has no area or no extent.
+            RenderingError: no headless OpenGL, where pictures need it.
         """
         if models is not None and self.exemplars is None:
             raise ClassifierError("a fit begins at exemplars, and there are none", where="models")
         rng = rng or np.random.default_rng(0)
-        images = self.render(mesh, views=views, rng=rng)
-        per_view, open_per_view = self._run(images)
-        pictured = per_view.mean(axis=0, dtype=np.float64)
-        opened = open_per_view.mean(axis=0, dtype=np.float64)
-        descriptor, distances, fits = None, None, None
-        if self.exemplars is not None:
-            descriptor = panorama_descriptor(mesh.vertices, mesh.faces)
-            every = self.exemplars.distances(descriptor)
-            distances, _ = self.exemplars.nearest(every)
-            if models is not None:
-                fits = {}
-                for number in np.argsort(-class_scores(opened, distances), kind="stable")[:FITTED_CLASSES]:
-                    fit = fit_class(descriptor, self.exemplars, every, int(number), models, rng)
-                    if fit is not None:
-                        fits[self.class_names[number]] = fit
-                        distances[number] = min(fit.distance, distances[number])
+        rotations, scales = self._views(views, rng)
+        with_ground, *without = (self._seen(sight, rotations, scales) for sight in self._sights(query))
+        seen = with_ground
+        for other in without:
+            if other.scores.max() > with_ground.scores.max() - GROUND_PREFERENCE:
+                seen = other
+        pictured, opened, distances = seen.pictured, seen.opened, seen.distances
+        fits = None
+        if self.exemplars is not None and models is not None:
+            assert seen.descriptor is not None
+            assert seen.exemplar_distances is not None
+            assert distances is not None
+            fits = {}
+            for number in np.argsort(-seen.scores, kind="stable")[:FITTED_CLASSES]:
+                fit = fit_class(seen.descriptor, self.exemplars, seen.exemplar_distances, int(number), models, rng)
+                if fit is not None:
+                    fits[self.class_names[number]] = fit
+                    distances[number] = min(fit.distance, distances[number])
         scores = class_scores(opened, distances)
         probabilities = self._ranked(class_probabilities(pictured, distances))
         curve = self._curve("pictures" if distances is None else "geometry")
@@ -207,15 +203,51 @@ class Classifier:
             picture_scores=self._ranked(class_scores(opened)),
             distances=None if distances is None else self._ranked(distances, lowest_first=True),
             fits=fits,
-            descriptor=descriptor,
-            per_view=per_view,
+            descriptor=seen.descriptor,
+            per_view=seen.per_view,
+            images=seen.images,
+        )
+
+    def _views(
+        self, views: int, rng: np.random.Generator
+    ) -> tuple[Float[np.ndarray, "N 3 3"], Float[np.ndarray, " N"]]:
+        if views < 1:
+            raise ClassifierError("at least one view is needed", where="views")
+        return spread_views(rng, views, scale_range=self.look.scale_range)
+
+    def _sights(self, query: TriangleMesh | PointCloud) -> "list[_Sight]":
+        """Return the ways to see a query: as it is, and where it may stand on the ground also without that."""
+        if self.look.style != "splats":
+            return [_DrawnMesh(query, self.look)]
+        return [_DrawnPoints(reading, self.look) for reading in readings(query)]
+
+    def _seen(self, sight: "_Sight", rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]) -> "_Seen":
+        images = sight.images(rotations, scales)
+        per_view, open_per_view = self._run(images)
+        opened = open_per_view.mean(axis=0, dtype=np.float64)
+        descriptor = every = distances = None
+        if self.exemplars is not None:
+            surface = sight.surface()
+            descriptor = panorama_descriptor(surface.vertices, surface.faces)
+            every = self.exemplars.distances(descriptor)
+            distances, _ = self.exemplars.nearest(every)
+        return _Seen(
             images=images,
+            per_view=per_view,
+            pictured=per_view.mean(axis=0, dtype=np.float64),
+            opened=opened,
+            descriptor=descriptor,
+            exemplar_distances=every,
+            distances=distances,
+            scores=class_scores(opened, distances),
         )
 
     def _run(self, images: UInt8[np.ndarray, "N H W 3"]) -> tuple[Float[np.ndarray, "N C"], Float[np.ndarray, "N C"]]:
         """Probabilities of pictures, without and with a share for ``none``."""
-        if images.shape[1:3] != (self.image_size, self.image_size):
-            raise ClassifierError(f"pictures of {images.shape[1:3]} pixels, expected {self.image_size}", where="images")
+        if images.shape[1:3] != (self.look.image_size, self.look.image_size):
+            raise ClassifierError(
+                f"pictures of {images.shape[1:3]} pixels, expected {self.look.image_size}", where="images"
+            )
         outputs = [PROBABILITIES, OPEN_PROBABILITIES]
         batches = [
             self._session.run(outputs, {IMAGES: images[start : start + BATCH_SIZE]})
@@ -231,6 +263,65 @@ class Classifier:
     def _curve(self, evidence: str) -> KnownCurve | None:
         values = self.metadata["known"][evidence]
         return None if values is None else KnownCurve.from_dict(values)
+
+
+class _Sight(Protocol):
+    """One way to see a query."""
+
+    def images(
+        self, rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]
+    ) -> UInt8[np.ndarray, "N H W 3"]:
+        """Draw it."""
+
+    def surface(self) -> TriangleMesh:
+        """Return what is compared with exemplars."""
+
+
+@dataclass(frozen=True, eq=False)
+class _DrawnMesh:
+    """A query whose triangles are drawn."""
+
+    query: TriangleMesh | PointCloud
+    look: Look
+
+    def images(
+        self, rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]
+    ) -> UInt8[np.ndarray, "N H W 3"]:
+        return draw([self.query], rotations, scales, self.look, shown=np.zeros(len(scales), dtype=np.int64))
+
+    def surface(self) -> TriangleMesh:
+        return plain_reading(self.query).described_surface()
+
+
+@dataclass(frozen=True, eq=False)
+class _DrawnPoints:
+    """A query whose points are drawn."""
+
+    reading: Reading
+    look: Look
+
+    def images(
+        self, rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]
+    ) -> UInt8[np.ndarray, "N H W 3"]:
+        shown = np.zeros(len(scales), dtype=np.int64)
+        return splat_images([self.reading.cloud], rotations, scales, objects=shown, size=self.look.image_size)
+
+    def surface(self) -> TriangleMesh:
+        return self.reading.described_surface()
+
+
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """What a sight says about the classes, in the order of their numbers."""
+
+    images: UInt8[np.ndarray, "N H W 3"]
+    per_view: Float[np.ndarray, "N C"]
+    pictured: Float[np.ndarray, " C"]
+    opened: Float[np.ndarray, " C"]
+    descriptor: PanoramaDescriptor | None
+    exemplar_distances: Float[np.ndarray, " M"] | None
+    distances: Float[np.ndarray, " C"] | None
+    scores: Float[np.ndarray, " C"]
 
 
 def _listed(values: Mapping[str, float], what: str) -> list[dict[str, Any]]:
@@ -291,7 +382,7 @@ def _checked_metadata(session: Any, where: str | None) -> dict[str, Any]:
             )
         class_names = metadata["class_names"]
         rendering = metadata["rendering"]
-        size = int(rendering["image_size"])
+        size = Look.from_dict(rendering).image_size
         for curve in (metadata["known"]["pictures"], metadata["known"]["geometry"]):
             if curve is not None:
                 KnownCurve.from_dict(curve)
@@ -300,10 +391,6 @@ def _checked_metadata(session: Any, where: str | None) -> dict[str, Any]:
             and all(isinstance(name, str) for name in class_names)
             and all(isinstance(model["digest"], str) for model in metadata["models"])
             and isinstance(metadata["metrics"], dict)
-            and rendering["style"] in STYLES
-            and rendering["framing"] in FRAMINGS
-            and float(rendering["window"]) > 0
-            and len([float(end) for end in rendering["scale_range"]]) == 2
         )
     except (ValueError, KeyError, TypeError) as error:
         raise ClassifierError(f"the metadata is damaged: {error!r}", where=where) from error

@@ -7,7 +7,7 @@ from typing import Any, Final
 from shapewright.errors import ClassifierError
 
 FORMAT = "shapewright-classifier"
-FORMAT_VERSION = 3
+FORMAT_VERSION = 4
 """Raise it when files written before are read no longer, or would answer otherwise."""
 METADATA_KEY = "shapewright"
 

@@ -170,7 +170,7 @@ class _Trial:
 
         def verdict(query: TriangleMesh | PointCloud) -> Verdict:
             rng = np.random.default_rng(self.seed)
-            return Verdict.of(label, classifier.classify(query, views=self.views, rng=rng))  # type: ignore[arg-type]
+            return Verdict.of(label, classifier.classify(query, views=self.views, rng=rng))
 
         try:
             clean = verdict(task.mesh)
