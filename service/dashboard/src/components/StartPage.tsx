@@ -80,7 +80,9 @@ function KnownClasses() {
             <li key={name}>
               {model ? (
                 <a href={formatRoute({ kind: "model", id: model.id })}>
-                  {model.thumbnail_url && <img src={model.thumbnail_url} alt="" loading="lazy" decoding="async" />}
+                  <span className="start-picture">
+                    {model.thumbnail_url && <img src={model.thumbnail_url} alt="" loading="lazy" decoding="async" />}
+                  </span>
                   {humanize(name)}
                 </a>
               ) : (
