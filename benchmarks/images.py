@@ -85,7 +85,7 @@ def main() -> None:
     features_s = median_seconds(lambda: extractor(images), options.repeats)
     head = Head(rng.normal(size=(10, 1280)).astype(np.float32), np.zeros(10, np.float32), 10, 1.0, {}, 0)
     names = tuple(f"class_{number}" for number in range(10))
-    metadata = classifier_metadata(names, (), backbone, TrainingSettings(), {}, Calibration(1.0, None, None, {}))
+    metadata = classifier_metadata(names, (), backbone, TrainingSettings(), {}, Calibration(1.0, None, None, None, {}))
     classifier = Classifier(export_classifier(backbone, head, metadata))
     mesh = TriangleMesh(vertices[0], triangles)
     classify_s = median_seconds(lambda: classifier.classify(mesh, views=options.views), 4 * options.repeats)

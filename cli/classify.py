@@ -16,7 +16,7 @@ from models_store.library.shipped import list_classes
 from shapewright.errors import MeshError, MeshFileError
 
 if TYPE_CHECKING:
-    from shapewright.classification import Classifier
+    from shapewright.classification import Classification, Classifier
     from shapewright.modeling import CompiledModel
 
 READERS = 4
@@ -39,7 +39,10 @@ def classify(
     ] = False,
     pictures: Annotated[
         Path | None,
-        typer.Option(help="Folder for a PNG of each mesh as the classifier saw it.", show_default=False),
+        typer.Option(
+            help="Folder for a PNG of each mesh as the classifier saw it, and of the variation nearest to an unknown one.",
+            show_default=False,
+        ),
     ] = None,
     jobs: Jobs = None,
     as_json: AsJson = False,
@@ -93,6 +96,8 @@ def classify(
 
                 pictures.mkdir(parents=True, exist_ok=True)
                 save_picture(compose_grid(found.images), picture)
+                if not found.is_known:
+                    _save_neighbor(network, found, picture.with_name(f"{picture.stem}-nearest.png"))
             results.append(
                 {"file": str(file)}
                 | found.to_dict()
@@ -115,6 +120,19 @@ def classify(
         return
     _print(results, skipped)
     typer.echo(classifier_line(classifier))
+
+
+def _save_neighbor(network: "Classifier", found: "Classification", file: Path) -> None:
+    """Save a picture of the variation that is nearest to an unknown mesh, if its model ships."""
+    neighbor = found.neighbor
+    if neighbor is None or network.exemplars is None:
+        return
+    model = _shipped([neighbor.class_name]).get(neighbor.digest)
+    if model is None:
+        return
+    from shapewright.rendering import render_mesh
+
+    save_picture(render_mesh(model.instance(network.exemplars.values(neighbor.row, model))), file)
 
 
 def _loaded(classifier: Path, *, fit: bool) -> "tuple[Classifier, dict[str, CompiledModel] | None]":
@@ -148,8 +166,23 @@ def _print(results: list[dict[str, Any]], skipped: dict[str, MeshFileError]) -> 
         probability = f"{first['probability']:.1%}"
         table.add_row(escape(result["file"]), result["answer"], known, first["class_name"], probability, following)
     stdout().print(table)
+    for result in results:
+        if result["answer"] != result["class_name"]:
+            typer.echo(f"{result['file']}: {_why_unknown(result)}")
     for file, error in skipped.items():
         typer.echo(f"skipped {file}: {_reason(file, error)}", err=True)
+
+
+def _why_unknown(result: dict[str, Any]) -> str:
+    """Say why a mesh is called unknown."""
+    pictured = {one["class_name"]: one["probability"] for one in result["picture_probabilities"]}
+    likeliest = max(pictured, key=lambda name: pictured[name])
+    said = [f"the pictures say {likeliest} with {pictured[likeliest]:.0%}"]
+    if (neighbor := result["neighbor"]) is not None:
+        usual = neighbor["usual_distance"]
+        limit = "" if usual is None else f"; nine of ten of this class are nearer than {usual:.2f}"
+        said.insert(0, f"nearest is a {neighbor['class_name']} at distance {neighbor['distance']:.2f}{limit}")
+    return "; ".join(["unknown", *said])
 
 
 def _reason(file: str, error: MeshFileError) -> str:

@@ -37,6 +37,7 @@ class ExtentClassifier:
             picture_scores=scores,
             distances=None,
             fits=None,
+            neighbor=None,
             descriptor=_hull_descriptor(query) if isinstance(query, PointCloud) else None,
             per_view=np.tile(np.array([1.0 - slab, slab], dtype=np.float32), (views, 1)),
             images=np.zeros((views, 8, 8, 3), dtype=np.uint8),

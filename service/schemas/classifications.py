@@ -50,6 +50,18 @@ class ClassFitOut(OutBody):
     exemplar_distance: float = Field(description="Where the fit began.")
 
 
+class NeighborOut(OutBody):
+    """The stored variation of the most probable class that is nearest to a mesh."""
+
+    class_name: str
+    model_id: str
+    exemplar: int = Field(description="Its row among the exemplars of the classifier.")
+    distance: float = Field(description="Panorama distance of the mesh.")
+    usual_distance: float | None = Field(
+        description="Within it lie nine of ten variations of models that were left out of the training."
+    )
+
+
 class ClassificationResultOut(OutBody):
     """The answer; what older ones lack is null."""
 
@@ -71,6 +83,9 @@ class ClassificationResultOut(OutBody):
         description="Panorama distance of the nearest exemplar of each class, nearest first; null without exemplars.",
     )
     fits: list[ClassFitOut] | None = Field(default=None, description="Of the classes that were fitted, if asked for.")
+    neighbor: NeighborOut | None = Field(
+        default=None, description="The nearest exemplar of the most probable class; null without exemplars."
+    )
     per_view: list[list[float]] = Field(
         description="A row a view; columns in the order of the classifier's `class_names`."
     )

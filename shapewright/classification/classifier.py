@@ -20,6 +20,7 @@ from shapewright.classification.evidence import (
 from shapewright.classification.exemplars import Exemplars
 from shapewright.classification.file_format import FORMAT, FORMAT_VERSION, METADATA_KEY
 from shapewright.classification.look import Look
+from shapewright.classification.neighbor import Neighbor
 from shapewright.classification.pictures import draw
 from shapewright.classification.readings import Reading, plain_reading, readings
 from shapewright.classification.synthesis import FITTED_CLASSES, Fit, fit_class
@@ -51,6 +52,7 @@ class Classification:
         picture_scores: the same by the pictures alone.
         distances: panorama distance of the nearest exemplar or fit of each class; ``None`` without exemplars.
         fits: of the classes that were fitted, instead of the nearest exemplar; ``None`` if nobody asked for that.
+        neighbor: the nearest exemplar of the most probable class; ``None`` without exemplars.
         descriptor: panorama descriptor of the mesh; ``None`` without exemplars.
         per_view: probabilities of each picture; columns in the order of the classifier's ``class_names``.
         images: the pictures that were looked at.
@@ -64,6 +66,7 @@ class Classification:
     picture_scores: dict[str, float]
     distances: dict[str, float] | None
     fits: dict[str, Fit] | None
+    neighbor: Neighbor | None
     descriptor: PanoramaDescriptor | None
     per_view: Float[np.ndarray, "N C"]
     images: UInt8[np.ndarray, "N H W 3"]
@@ -88,6 +91,7 @@ class Classification:
             "picture_probabilities": _listed(self.picture_probabilities, "probability"),
             "distances": None if self.distances is None else _listed(self.distances, "distance"),
             "fits": None if self.fits is None else [{"class_name": n} | fit.to_dict() for n, fit in self.fits.items()],
+            "neighbor": None if self.neighbor is None else self.neighbor.to_dict(),
             "per_view": np.asarray(self.per_view, dtype=np.float64).tolist(),
         }
 
@@ -203,9 +207,24 @@ class Classifier:
             picture_scores=self._ranked(class_scores(opened)),
             distances=None if distances is None else self._ranked(distances, lowest_first=True),
             fits=fits,
+            neighbor=self._neighbor(next(iter(probabilities)), seen.exemplar_distances),
             descriptor=seen.descriptor,
             per_view=seen.per_view,
             images=seen.images,
+        )
+
+    def _neighbor(self, class_name: str, distances: Float[np.ndarray, " M"] | None) -> Neighbor | None:
+        if self.exemplars is None or distances is None:
+            return None
+        number = self.class_names.index(class_name)
+        lowest, rows = self.exemplars.nearest(distances)
+        usual = self.metadata["usual_distances"]
+        return Neighbor(
+            class_name=class_name,
+            digest=self.exemplars.digests[self.exemplars.models[rows[number]]],
+            row=int(rows[number]),
+            distance=float(lowest[number]),
+            usual_distance=None if usual is None else usual[number],
         )
 
     def _views(
@@ -386,8 +405,10 @@ def _checked_metadata(session: Any, where: str | None) -> dict[str, Any]:
         for curve in (metadata["known"]["pictures"], metadata["known"]["geometry"]):
             if curve is not None:
                 KnownCurve.from_dict(curve)
+        usual = metadata["usual_distances"]
         sound = (
-            isinstance(class_names, list)
+            (usual is None or ([float(one) for one in usual] == usual and len(usual) == len(class_names)))
+            and isinstance(class_names, list)
             and all(isinstance(name, str) for name in class_names)
             and all(isinstance(model["digest"], str) for model in metadata["models"])
             and isinstance(metadata["metrics"], dict)

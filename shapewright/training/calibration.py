@@ -30,6 +30,8 @@ _TRIED_A_KIND: Final = 40
 """Variations of each class, and objects of each source without a class, that are tried."""
 _VIEWS: Final = 4
 _BINS: Final = 15
+_USUAL: Final = 0.9
+"""Share of the variations whose distances count as usual."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,8 @@ class Calibration:
         temperature: of the class values.
         pictures: curve of ``known`` for pictures alone; ``None`` if no objects of no class were learned from.
         geometry: the same with distances to exemplars; ``None`` without exemplars.
+        usual_distances: of each class, the panorama distance to its nearest exemplar within which nine of ten of the
+            tried variations lie; ``None`` without exemplars.
         metrics: figures as JSON values: accuracy on variations of left-out models by pictures and by all
             evidence, how far their probabilities by all evidence are from the truth, and the area under the curve of
             known against unknown; what was not tried is missing.
@@ -48,6 +52,7 @@ class Calibration:
     temperature: float
     pictures: KnownCurve | None
     geometry: KnownCurve | None
+    usual_distances: tuple[float, ...] | None
     metrics: dict[str, Any]
 
 
@@ -114,12 +119,22 @@ def calibrate(
         return fit_known_curve(best, known) if has_none else None
 
     pictures = judged("_pictures", probabilities, class_scores(opened))
-    geometry = None
+    geometry = usual = None
     if exemplars is not None and descriptors is not None:
         near = _distances_without_own_model(data, descriptors, exemplars, meshes)
         by_all = np.stack([class_probabilities(p, d) for p, d in zip(probabilities, near, strict=True)])
         geometry = judged("", by_all, class_scores(opened, near))
-    return Calibration(temperature, pictures, geometry, metrics)
+        usual = _usual_distances(near[known], labels[known])
+    return Calibration(temperature, pictures, geometry, usual, metrics)
+
+
+def _usual_distances(near: Float[np.ndarray, "K C"], labels: Int[np.ndarray, " K"]) -> tuple[float, ...]:
+    """Return the quantile of the distances to the own class, of each class; of all together where one was not tried."""
+    own = near[np.arange(len(labels)), labels]
+    return tuple(
+        float(np.quantile(own[labels == number] if (labels == number).any() else own, _USUAL))
+        for number in range(near.shape[1])
+    )
 
 
 def _honest(

@@ -57,6 +57,7 @@ def classifier_metadata(
             name: None if curve is None else curve.to_dict()
             for name, curve in (("pictures", calibration.pictures), ("geometry", calibration.geometry))
         },
+        "usual_distances": None if calibration.usual_distances is None else list(calibration.usual_distances),
         "settings": settings.to_dict(),
         "metrics": metrics,
     }

@@ -188,7 +188,7 @@ def test_the_graph_computes_the_trained_head():
 
     backbone = load_backbone()
     settings = TrainingSettings(image_size=64)
-    calibration = Calibration(2.5, None, None, {})
+    calibration = Calibration(2.5, None, None, None, {})
     metadata = classifier_metadata(("a", "b", "c", "d"), (), backbone, settings, {}, calibration)
     images = rng.integers(0, 256, (5, 64, 64, 3), dtype=np.uint8)
     features = FeatureExtractor(backbone)(images)

@@ -83,7 +83,7 @@ def exported(backbone: Backbone) -> onnx.ModelProto:
     """A classifier's file on this backbone."""
     weight = np.random.default_rng(0).normal(size=(3, backbone.feature_count)).astype(np.float32)
     head = Head(weight=weight, bias=weight[:, 0], class_count=3, temperature=1.0, curves={}, best_epoch=0)
-    calibration = Calibration(1.0, None, None, {})
+    calibration = Calibration(1.0, None, None, None, {})
     metadata = classifier_metadata(("a", "b", "c"), (), backbone, TrainingSettings(), {}, calibration)
     return onnx.load_model_from_string(export_classifier(backbone, head, metadata))
 

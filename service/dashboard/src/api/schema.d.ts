@@ -977,6 +977,8 @@ export interface components {
              * @description Of the classes that were fitted, if asked for.
              */
             fits: components["schemas"]["ClassFitOut"][] | null;
+            /** @description The nearest exemplar of the most probable class; null without exemplars. */
+            neighbor: components["schemas"]["NeighborOut"] | null;
             /**
              * Per View
              * @description A row a view; columns in the order of the classifier's `class_names`.
@@ -1999,6 +2001,31 @@ export interface components {
              * @description Smallest panorama distance of its random instances, if it has any.
              */
             panorama: number | null;
+        };
+        /**
+         * NeighborOut
+         * @description The stored variation of the most probable class that is nearest to a mesh.
+         */
+        NeighborOut: {
+            /** Class Name */
+            class_name: string;
+            /** Model Id */
+            model_id: string;
+            /**
+             * Exemplar
+             * @description Its row among the exemplars of the classifier.
+             */
+            exemplar: number;
+            /**
+             * Distance
+             * @description Panorama distance of the mesh.
+             */
+            distance: number;
+            /**
+             * Usual Distance
+             * @description Within it lie nine of ten variations of models that were left out of the training.
+             */
+            usual_distance: number | null;
         };
         /**
          * OptionOut
