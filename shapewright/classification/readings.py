@@ -88,13 +88,9 @@ def readings(query: TriangleMesh | PointCloud) -> list[Reading]:
         return [first] if ground is None else [first, Reading(first.points[~ground], first.spacing, None)]
     whole, places = _mesh_reading(without_noise(query))
     debris = is_debris(whole.points, whole.spacing)
-    first = _part(whole, places, ~debris) if debris.any() else whole
+    first, places = _mesh_reading(_part(whole, places, ~debris)) if debris.any() else (whole, places)
     ground = is_ground(first.points)
-    if ground is None:
-        return [first]
-    kept = ~debris
-    kept[kept] = ~ground
-    return [first, _part(whole, places, kept)]
+    return [first] if ground is None else [first, _mesh_reading(_part(first, places, ~ground))[0]]
 
 
 def _mesh_reading(mesh: TriangleMesh) -> tuple[Reading, Int[np.ndarray, " N"]]:
@@ -111,19 +107,17 @@ def _mesh_reading(mesh: TriangleMesh) -> tuple[Reading, Int[np.ndarray, " N"]]:
     return Reading(points, float(np.sqrt(area / count)), mesh), faces
 
 
-def _part(whole: Reading, places: Int[np.ndarray, " N"], kept: Bool[np.ndarray, " N"]) -> Reading:
-    """Return the reading of what the kept points lie on; faces without a point go with the nearest one."""
+def _part(whole: Reading, places: Int[np.ndarray, " N"], kept: Bool[np.ndarray, " N"]) -> TriangleMesh:
+    """Return what the kept points of a mesh lie on; faces without a point go with the nearest one."""
     assert whole.surface is not None
     votes = np.zeros(len(whole.surface.faces))
     np.add.at(votes, places, np.where(kept, 1.0, -1.0))
-    silent = np.setdiff1d(np.arange(len(votes)), places)
+    silent = np.flatnonzero(np.bincount(places, minlength=len(votes)) == 0)
     if len(silent):
         middles = whole.surface.triangles[silent].mean(axis=1)
         votes[silent] = np.where(kept[cKDTree(whole.points).query(middles)[1]], 1.0, -1.0)
-    faces = whole.surface.faces[votes > 0]
-    used, renumbered = np.unique(faces, return_inverse=True)
-    surface = TriangleMesh(whole.surface.vertices[used], renumbered.reshape(-1, 3)) if len(faces) else None
-    return Reading(whole.points[kept], whole.spacing, surface)
+    used, renumbered = np.unique(whole.surface.faces[votes > 0], return_inverse=True)
+    return TriangleMesh(whole.surface.vertices[used], renumbered.reshape(-1, 3))
 
 
 def _cloud_spacing(points: Float[np.ndarray, "N 3"]) -> float:

@@ -20,9 +20,9 @@ _SPACINGS: Final = 2.5
 """A cell is no smaller than so many distances between neighboring points."""
 _LARGEST_SHARE: Final = 0.015
 """Share of the points above which a piece belongs to the object unless it is small."""
-_LARGEST_SIZE: Final = 0.12
+_LARGEST_SIZE: Final = 0.2
 """Extent, in diagonals of the largest piece, above which a piece belongs to the object unless it has few points."""
-_MOST: Final = 0.25
+_MOST: Final = 0.4
 """Share of the points that can be debris at all; an object in many small pieces keeps them."""
 
 _ASKED: Final = 1_500
