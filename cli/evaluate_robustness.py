@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cli.console import AsJson, print_json, shown_progress, stdout
-from cli.evaluate_classifier import SettingsFile, Views, shipped_classes_of
+from cli.evaluate_classifier import SettingsFile, Train, Views, shipped_classes_of
 from cli.evaluation_options import (
     CacheFolder,
     Classes,
@@ -25,7 +25,7 @@ from cli.evaluation_options import (
     threads,
 )
 from cli.learning import kept_classifier_file
-from cli.sources import load_negatives, read_object
+from cli.sources import chosen_classifier, load_negatives, read_object
 from shapewright.errors import EvaluationError
 from shapewright.progress import PartialProgress, Progress
 from shapewright.whole_file import write_whole
@@ -59,6 +59,7 @@ def robustness(
     limit: Limit = None,
     classes: Classes = None,
     views: Views = 10,
+    train: Train = False,
     settings_file: SettingsFile = None,
     seed: Seed = 0,
     jobs: Jobs = None,
@@ -74,7 +75,7 @@ def robustness(
 
     The corruptions are noise, holes, decimated, half (a one-sided scan), flipped, clustered, outliers, dust, ground,
     stitched, closed, voxels, uneven and points. What is done to a mesh depends on --seed, the corruption, its strength
-    and the name of the file only. Without --classifier, one is trained with --seed on the shipped models of the
+    and the name of the file only. With --train a classifier is trained, with --seed, on the shipped models of the
     dataset's classes.
 
     Examples:
@@ -97,12 +98,16 @@ def robustness(
     chosen = chosen_meshes(items, classes, limit)
     with threads(jobs) as used, shown_progress("robustness") as progress:
         first = 0.0
-        if classifier is None:
+        if train or settings_file is not None:
+            if classifier is not None:
+                raise EvaluationError("name a classifier or train one, not both", where="--classifier")
             first = _TRAINING_SHARE
-            classifier = _trained(items, settings_file, seed, PartialProgress(progress, 0.0, first), cache)
+            chosen_file = _trained(items, settings_file, seed, PartialProgress(progress, 0.0, first), cache)
+        else:
+            chosen_file = chosen_classifier(classifier)
         measured = measure_robustness(
             chosen,
-            partial(load_classifier, classifier, threads=1),
+            partial(load_classifier, chosen_file, threads=1),
             conditions,
             views=views,
             seed=seed,
@@ -114,7 +119,7 @@ def robustness(
     if as_json:
         document = {
             "dataset": str(dataset),
-            "classifier": _described(classifier),
+            "classifier": _described(chosen_file),
             "class_names": list(measured.class_names),
             "strengths": strengths.value,
             "views": views,
