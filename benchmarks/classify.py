@@ -1,9 +1,8 @@
 """Speed of classification: ``.venv/bin/python benchmarks/classify.py``, one JSON document.
 
 One mesh of about 5 000 faces on a warm classifier (10 views, with geometry), by its parts; the same without geometry;
-meshes of a folder a second, files and their child processes included. The baseline asks for one view at a time. With
-``--classifier`` a trained one is measured, else one of a few variations, whose exemplars are repeated up to the number
-that the paper's scale has.
+meshes of a folder a second, files and their child processes included. The baseline asks for one view at a time. The
+classifier that ships is measured unless ``--classifier`` names another.
 """
 
 import argparse
@@ -18,15 +17,13 @@ from pathlib import Path
 
 import numpy as np
 
-from cli.sources import load_classes, load_negatives
-from shapewright.classification import Classifier, Exemplars, load_classifier
+from shapewright.classification import Classifier, load_classifier, load_ready_classifier
+from shapewright.classification.readings import readings
 from shapewright.distances.panorama import panorama_descriptor
 from shapewright.evaluation.datasets import LabelledFile, load_each
 from shapewright.mesh import TriangleMesh
-from shapewright.training import TrainingSettings, train_classifier
 
 FACES = 5000
-SCALE = 10_000
 
 
 def median_ms(work: Callable[[], object], repeats: int) -> float:
@@ -38,24 +35,6 @@ def median_ms(work: Callable[[], object], repeats: int) -> float:
         work()
         seconds.append(time.perf_counter() - started_s)
     return round(1e3 * statistics.median(seconds), 1)
-
-
-def small_classifier() -> Classifier:
-    """Learned in a minute, as slow as one of the paper's scale."""
-    classes = load_classes(None)
-    settings = TrainingSettings(variations=10, images_per_variation=2, negatives=10)
-    trained = train_classifier(classes, settings, negatives=load_negatives(classes))
-    few = trained.exemplars
-    assert few is not None
-    times = -(-SCALE // len(few))
-    many = Exemplars(
-        few.class_names,
-        few.digests,
-        few.seed,
-        few.subdivision_steps,
-        *(np.concatenate([array] * times) for array in (few.classes, few.models, few.numbers, few.descriptors)),
-    )
-    return Classifier(trained.onnx, exemplars=many)
 
 
 def sphere_like(faces: int) -> TriangleMesh:
@@ -88,13 +67,14 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=15)
     parser.add_argument("--meshes", type=int, default=60)
     options = parser.parse_args()
-    classifier = load_classifier(options.classifier) if options.classifier else small_classifier()
+    classifier = load_classifier(options.classifier) if options.classifier else load_ready_classifier()
     pictures_alone = Classifier.__new__(Classifier)
     pictures_alone.__dict__.update(vars(classifier) | {"exemplars": None})
     mesh = sphere_like(FACES)
     images = classifier.render(mesh)
     parts = {
-        "drawing": median_ms(lambda: classifier.render(mesh), options.repeats),
+        "reading": median_ms(lambda: readings(mesh), options.repeats),
+        "reading and drawing": median_ms(lambda: classifier.render(mesh), options.repeats),
         "network": median_ms(lambda: classifier.predict(images), options.repeats),
     }
     if classifier.exemplars is not None:

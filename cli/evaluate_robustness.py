@@ -98,9 +98,7 @@ def robustness(
     chosen = chosen_meshes(items, classes, limit)
     with threads(jobs) as used, shown_progress("robustness") as progress:
         first = 0.0
-        if train or settings_file is not None:
-            if classifier is not None:
-                raise EvaluationError("name a classifier or train one, not both", where="--classifier")
+        if classifier is None and (train or settings_file is not None):
             first = _TRAINING_SHARE
             chosen_file = _trained(items, settings_file, seed, PartialProgress(progress, 0.0, first), cache)
         else:
