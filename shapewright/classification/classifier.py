@@ -34,6 +34,9 @@ from shapewright.rendering.splats import splat_images
 from shapewright.rendering.views import spread_views
 
 DEFAULT_VIEWS: Final = 10
+FAR: Final = 0.35
+"""Panorama distance of the nearest exemplar from which a mesh is compared by surfels, too: noise and holes make even a
+familiar shape look far, an ordinary query is nearer."""
 GROUND_PREFERENCE: Final = 0.25
 """How much lower the best score may be without the ground than with it, for the ground to be left out all the same."""
 
@@ -250,6 +253,10 @@ class Classifier:
             descriptor = panorama_descriptor(surface.vertices, surface.faces)
             every = self.exemplars.distances(descriptor)
             distances, _ = self.exemplars.nearest(every)
+            if distances.min() > FAR and (smooth := sight.smooth_surface()) is not None:
+                other = self.exemplars.distances(panorama_descriptor(smooth.vertices, smooth.faces))
+                every = np.minimum(every, other)
+                distances, _ = self.exemplars.nearest(every)
         return _Seen(
             images=images,
             per_view=per_view,
@@ -295,6 +302,9 @@ class _Sight(Protocol):
     def surface(self) -> TriangleMesh:
         """Return what is compared with exemplars."""
 
+    def smooth_surface(self) -> TriangleMesh | None:
+        """Return a smooth stand-in for the surface, if there is one."""
+
 
 @dataclass(frozen=True, eq=False)
 class _DrawnMesh:
@@ -310,6 +320,9 @@ class _DrawnMesh:
 
     def surface(self) -> TriangleMesh:
         return plain_reading(self.query).described_surface()
+
+    def smooth_surface(self) -> TriangleMesh | None:
+        return None
 
 
 @dataclass(frozen=True, eq=False)
@@ -327,6 +340,9 @@ class _DrawnPoints:
 
     def surface(self) -> TriangleMesh:
         return self.reading.described_surface()
+
+    def smooth_surface(self) -> TriangleMesh | None:
+        return None if self.reading.surface is None else self.reading.smooth_surface()
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,12 +16,14 @@ from jaxtyping import Bool, Float
 GEOMETRY_WEIGHT: Final = 10.0
 """How much of a log-probability a unit of panorama distance is worth where the class is chosen. From 5 to 15 little
 changes on clean meshes; one-sided scans ask for less."""
-KNOWN_WEIGHT: Final = 5.0
+KNOWN_WEIGHT: Final = 3.0
 """The same in the score, which tells what is known."""
 FLOOR: Final = 1e-3
 """No single source of evidence rules a class out."""
 KNOWN_THRESHOLD: Final = 0.5
 """A mesh whose ``known`` is below is answered with ``unknown``."""
+REFUSED: Final = 0.9
+"""Share of objects of no class, among those that a classifier is tried on, that are answered with ``unknown``."""
 UNKNOWN: Final = "unknown"
 """The answer for a mesh of none of the classes."""
 OTHER: Final = "other"
@@ -84,9 +86,10 @@ def class_probabilities(
 
 
 def fit_known_curve(scores: Float[np.ndarray, " M"], is_known: Bool[np.ndarray, " M"]) -> KnownCurve:
-    """Logistic regression of ``is_known`` on the best score, both kinds with the same weight.
+    """Fit a logistic curve of ``is_known`` to the best score, both kinds with the same weight, and then move it.
 
-    A small pull towards slope 1 keeps the curve sane where the kinds do not overlap.
+    It is moved up to where it refuses :data:`REFUSED` of the objects of no class, if it refuses fewer. A small pull
+    toward slope 1 keeps the curve sane where the kinds do not overlap.
     """
     from scipy.optimize import minimize  # only training fits; loading scipy would double the time to the first answer
 
@@ -99,7 +102,13 @@ def fit_known_curve(scores: Float[np.ndarray, " M"], is_known: Bool[np.ndarray, 
 
     middle = (scores[is_known].mean() + scores[~is_known].mean()) / 2
     found = minimize(loss, np.array([0.0, -middle]), method="Nelder-Mead")
-    return KnownCurve(float(np.exp(found.x[0])), float(found.x[1]))
+    slope = float(np.exp(found.x[0]))
+    refusing = -slope * float(np.quantile(scores[~is_known], REFUSED)) + _log_odds(KNOWN_THRESHOLD)
+    return KnownCurve(slope, min(float(found.x[1]), refusing))
+
+
+def _log_odds(probability: float) -> float:
+    return float(np.log(probability / (1.0 - probability)))
 
 
 def auroc(positive: Float[np.ndarray, " P"], negative: Float[np.ndarray, " N"]) -> float:

@@ -57,7 +57,11 @@ class Reading:
 
     def described_surface(self) -> TriangleMesh:
         """Return what is compared: the mesh, or surfels."""
-        return surfels(self.points, self.spacing) if self.surface is None else self.surface
+        return self.smooth_surface() if self.surface is None else self.surface
+
+    def smooth_surface(self) -> TriangleMesh:
+        """Return surfels, which neither noise nor small holes change much, in place of the surface."""
+        return surfels(self.points, self.spacing)
 
 
 def plain_reading(query: TriangleMesh | PointCloud) -> Reading:
@@ -88,9 +92,11 @@ def readings(query: TriangleMesh | PointCloud) -> list[Reading]:
         return [first] if ground is None else [first, Reading(first.points[~ground], first.spacing, None)]
     whole, places = _mesh_reading(without_noise(query))
     debris = is_debris(whole.points, whole.spacing)
-    first, places = _mesh_reading(_part(whole, places, ~debris)) if debris.any() else (whole, places)
+    cleared = _part(whole, places, ~debris) if debris.any() else None
+    first, places = (whole, places) if cleared is None else _mesh_reading(cleared)
     ground = is_ground(first.points)
-    return [first] if ground is None else [first, _mesh_reading(_part(first, places, ~ground))[0]]
+    lifted = None if ground is None else _part(first, places, ~ground)
+    return [first] if lifted is None else [first, _mesh_reading(lifted)[0]]
 
 
 def _mesh_reading(mesh: TriangleMesh) -> tuple[Reading, Int[np.ndarray, " N"]]:
@@ -107,8 +113,11 @@ def _mesh_reading(mesh: TriangleMesh) -> tuple[Reading, Int[np.ndarray, " N"]]:
     return Reading(points, float(np.sqrt(area / count)), mesh), faces
 
 
-def _part(whole: Reading, places: Int[np.ndarray, " N"], kept: Bool[np.ndarray, " N"]) -> TriangleMesh:
-    """Return what the kept points of a mesh lie on; faces without a point go with the nearest one."""
+def _part(whole: Reading, places: Int[np.ndarray, " N"], kept: Bool[np.ndarray, " N"]) -> TriangleMesh | None:
+    """Return the faces that most of their points stay with, or ``None`` if they have no area.
+
+    Faces without a point go with the nearest one.
+    """
     assert whole.surface is not None
     votes = np.zeros(len(whole.surface.faces))
     np.add.at(votes, places, np.where(kept, 1.0, -1.0))
@@ -116,7 +125,10 @@ def _part(whole: Reading, places: Int[np.ndarray, " N"], kept: Bool[np.ndarray, 
     if len(silent):
         middles = whole.surface.triangles[silent].mean(axis=1)
         votes[silent] = np.where(kept[cKDTree(whole.points).query(middles)[1]], 1.0, -1.0)
-    used, renumbered = np.unique(whole.surface.faces[votes > 0], return_inverse=True)
+    stay = votes > 0
+    if not whole.surface.face_areas[stay].sum() > 0:
+        return None
+    used, renumbered = np.unique(whole.surface.faces[stay], return_inverse=True)
     return TriangleMesh(whole.surface.vertices[used], renumbered.reshape(-1, 3))
 
 

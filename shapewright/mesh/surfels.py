@@ -10,7 +10,7 @@ from shapewright.mesh.triangle_mesh import TriangleMesh
 
 MOST: Final = 2_500
 """Surfels at most; of more points, some take part in the planes of their neighbors alone."""
-_NEIGHBORS: Final = 12
+_NEIGHBORS: Final = 48
 """Points that span the plane of a surfel, itself among them."""
 _SIZE: Final = 1.35
 """Distance of a corner from the middle, in spacings: surfels overlap a little."""

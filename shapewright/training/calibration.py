@@ -106,6 +106,7 @@ def calibrate(
     probabilities = softmax(closed / temperature).mean(axis=1)
     opened = softmax(values / temperature)[..., : data.class_count].mean(axis=1)
     metrics: dict[str, Any] = {"left_out_meshes": int(forecast.sum())}
+    whole = _whole(plan, settings, known, meshes)
     has_none = values.shape[2] > data.class_count
 
     def judged(name: str, by_class: Float[np.ndarray, "M C"], scores: Float[np.ndarray, "M C"]) -> KnownCurve | None:
@@ -116,7 +117,7 @@ def calibrate(
             metrics[f"left_out_calibration_error{name}"] = calibration_error(by_class[forecast].max(axis=1), right)
             if has_none:
                 metrics[f"left_out_auroc{name}"] = auroc(best[forecast], best[~known])
-        return fit_known_curve(best, known) if has_none else None
+        return fit_known_curve(best[whole], known[whole]) if has_none else None
 
     pictures = judged("_pictures", probabilities, class_scores(opened))
     geometry = usual = None
@@ -124,8 +125,19 @@ def calibrate(
         near = _distances_without_own_model(data, descriptors, exemplars, meshes)
         by_all = np.stack([class_probabilities(p, d) for p, d in zip(probabilities, near, strict=True)])
         geometry = judged("", by_all, class_scores(opened, near))
-        usual = _usual_distances(near[known], labels[known])
+        usual = _usual_distances(near[known & whole], labels[known & whole])
     return Calibration(temperature, pictures, geometry, usual, metrics)
+
+
+def _whole(
+    plan: Plan, settings: TrainingSettings, known: Bool[np.ndarray, " M"], meshes: Int[np.ndarray, " M"]
+) -> Bool[np.ndarray, " M"]:
+    """Return which objects are whole: what is known is told by them, as a scanner's faults would move the curve.
+
+    All count if the whole ones are of one kind only.
+    """
+    whole = ~np.concatenate([share.broken(settings) for share in plan.shares])[meshes]
+    return whole if (whole & known).any() and (whole & ~known).any() else np.ones_like(whole)
 
 
 def _usual_distances(near: Float[np.ndarray, "K C"], labels: Int[np.ndarray, " K"]) -> tuple[float, ...]:

@@ -10,6 +10,8 @@ from hypothesis.extra import numpy as arrays
 
 from shapewright.classification.evidence import (
     FLOOR,
+    KNOWN_THRESHOLD,
+    REFUSED,
     KnownCurve,
     auroc,
     class_probabilities,
@@ -85,12 +87,18 @@ def test_the_curve_separates_and_is_one_half_between(middle, gap, seed, counts) 
     assert max(curve.probability(float(score)) for score in unknown) < 0.5
 
 
-def test_the_curve_of_kinds_that_overlap_is_honest() -> None:
+@pytest.mark.parametrize("distance", [1.0, 2.0, 4.0])
+def test_the_curve_of_kinds_that_overlap_refuses_nine_of_ten_of_no_class(distance: float) -> None:
     rng = np.random.default_rng(0)
-    scores = np.concatenate([rng.normal(1.0, 1.0, 4000), rng.normal(-1.0, 1.0, 400)])
-    curve = fit_known_curve(scores, np.arange(4400) < 4000)
-    assert curve.slope == pytest.approx(2.0, rel=0.15), "the log odds of two such normal distributions"
-    assert curve.intercept == pytest.approx(0.0, abs=0.2)
+    known, unknown = rng.normal(distance / 2, 1.0, 4000), rng.normal(-distance / 2, 1.0, 4000)
+    curve = fit_known_curve(np.concatenate([known, unknown]), np.arange(8000) < 4000)
+    assert curve.slope == pytest.approx(distance, rel=0.25), "the log odds of two such normal distributions"
+    refused = np.mean([curve.probability(float(score)) < KNOWN_THRESHOLD for score in unknown])
+    assert refused >= REFUSED - 0.01
+    if distance < 2.5:
+        assert refused == pytest.approx(REFUSED, abs=0.01)
+    else:
+        assert curve.intercept == pytest.approx(0.0, abs=0.2), "the honest curve refuses more than that anyway"
 
 
 @given(st.floats(0.01, 50.0), st.floats(-50.0, 50.0), st.floats(-10.0, 10.0), st.floats(0.0, 5.0))
