@@ -9,11 +9,12 @@ from scipy.spatial import cKDTree
 from shapewright.mesh.triangle_mesh import TriangleMesh
 
 MOST: Final = 2_500
-"""Surfels at most; of more points, some take part in the planes of their neighbors alone."""
+"""Surfels at most; of more points, every k-th gets a surfel, and the others only help to fit the planes."""
 _NEIGHBORS: Final = 48
 """Points that span the plane of a surfel, itself among them."""
 _SIZE: Final = 1.35
-"""Distance of a corner from the middle, in spacings: surfels overlap a little."""
+"""Distance of a corner from the middle, in spacings. A surfel is 2.4 times as large as the square that its point has to
+itself: surfels at random places then cover about nine tenths of the surface."""
 
 
 def surfels(points: Float[np.ndarray, "N 3"], spacing: float) -> TriangleMesh:
@@ -22,11 +23,8 @@ def surfels(points: Float[np.ndarray, "N 3"], spacing: float) -> TriangleMesh:
     A triangle lies in this plane, not at the point itself, which takes some noise away.
 
     Args:
-        points: on a surface, at random or spread evenly.
+        points: on a surface, at random or spread evenly; at least one.
         spacing: side of the square that each point has to itself on the surface.
-
-    Raises:
-        MeshError: points that are not finite, or none.
     """
     chosen = points[:: max(1, -(-len(points) // MOST))]
     near = points[cKDTree(points).query(chosen, k=min(_NEIGHBORS, len(points)))[1].reshape(len(chosen), -1)]
