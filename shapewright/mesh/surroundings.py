@@ -18,6 +18,8 @@ _CELLS: Final = 32
 """Cells of the grid along the diagonal of the bulk: what is two cells apart is not connected."""
 _SPACINGS: Final = 2.5
 """A cell is no smaller than so many distances between neighboring points."""
+_FAR: Final = 2**16
+"""Cells beyond the bulk at which all that is farther away counts as if it were there; more would overflow the keys."""
 _LARGEST_SHARE: Final = 0.015
 """Share of the points above which a piece belongs to the object unless it is small."""
 _LARGEST_SIZE: Final = 0.2
@@ -50,8 +52,9 @@ def is_debris(points: Float[np.ndarray, "N 3"], spacing: float) -> Bool[np.ndarr
     nothing = np.zeros(len(points), dtype=bool)
     if not cell > 0:
         return nothing
-    origin = points.min(axis=0)
-    cells, of_point = _cells(np.floor((points - origin) / cell).astype(np.int64))
+    far = _FAR * cell
+    origin = np.maximum(points.min(axis=0), low - far)
+    cells, of_point = _cells(np.floor((np.clip(points, origin, high + far) - origin) / cell).astype(np.int64))
     pairs = cKDTree(cells).query_pairs(1.8, output_type="ndarray")  # cells that touch, at a corner at least
     links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(cells), len(cells)))
     count, piece_of_cell = connected_components(links, directed=False)
