@@ -30,14 +30,17 @@ _MOST: Final = 0.4
 _ASKED: Final = 1_500
 """Points that the ground is looked for with."""
 _TRIALS: Final = 300
+"""Planes that are tried."""
 _FLAT: Final = 0.006
 """Distance from a plane within which points lie on it, in diagonals."""
 _NEAR: Final = 64
 """A trial plane goes through a point and two of so many nearest neighbors, among the points asked."""
 _LEAST_GROUND: Final = 0.15
 """Share of the points that a ground has at least."""
+_MOST_GROUND: Final = 0.97
+"""Share above which there is hardly an object left beside it: a flat object is not its own ground."""
 _ONE_SIDE: Final = 0.985
-"""Share of the other points that lie above it."""
+"""Share of the other points that lie above it, and that reach nowhere beyond its rim."""
 
 
 def is_debris(points: Float[np.ndarray, "N 3"], spacing: float) -> Bool[np.ndarray, " N"]:
@@ -85,8 +88,8 @@ def _cells(places: Int[np.ndarray, "N 3"]) -> tuple[Int[np.ndarray, "C 3"], Int[
 def is_ground(points: Float[np.ndarray, "N 3"]) -> Bool[np.ndarray, " N"] | None:
     """Tell which points lie on a plane that may be the ground the object stands on; ``None`` if there is none.
 
-    All the rest lies on one side of such a plane and reaches nowhere beyond its rim. The top of a table that stands on
-    its head is no different: whether it is ground, who knows the classes has to tell.
+    Nearly all the rest lies on one side of such a plane and within its rim. The same holds for the top of a table, so
+    only a comparison with the classes can tell which of the two it is.
 
     Args:
         points: spread evenly over everything there is.
@@ -109,7 +112,7 @@ def is_ground(points: Float[np.ndarray, "N 3"]) -> Bool[np.ndarray, " N"] | None
     shares = on.mean(axis=0)
     above, below = (heights > flat).sum(axis=0), (heights < -flat).sum(axis=0)
     rest = np.maximum(above + below, 1)
-    shares[(np.maximum(above, below) < _ONE_SIDE * rest) | (shares > 0.97)] = 0.0
+    shares[(np.maximum(above, below) < _ONE_SIDE * rest) | (shares > _MOST_GROUND)] = 0.0
     best = int(np.argmax(shares))
     if shares[best] < _LEAST_GROUND:
         return None
