@@ -38,7 +38,7 @@ def ball(count: int, radius: float, center: tuple[float, float, float]) -> np.nd
 def sheet(side: float, height: float) -> TriangleMesh:
     """A horizontal square without thickness."""
     corners = 0.5 * side * np.array([[-1.0, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]])
-    return TriangleMesh(corners + [0, height, 0], np.array([[0, 1, 2], [0, 2, 3]]))
+    return TriangleMesh(corners + np.array([0.0, height, 0.0]), np.array([[0, 1, 2], [0, 2, 3]]))
 
 
 def moved(points: np.ndarray, turn_seed: int, size: float) -> np.ndarray:
