@@ -416,8 +416,7 @@ def _checked_metadata(session: Any, where: str | None) -> dict[str, Any]:
                 where=where,
             )
         class_names = metadata["class_names"]
-        rendering = metadata["rendering"]
-        size = Look.from_dict(rendering).image_size
+        size = _checked_look(metadata["rendering"], where).image_size
         for curve in (metadata["known"]["pictures"], metadata["known"]["geometry"]):
             if curve is not None:
                 KnownCurve.from_dict(curve)
@@ -440,6 +439,14 @@ def _checked_metadata(session: Any, where: str | None) -> dict[str, Any]:
     if not sound or any(shapes.get(name) != shape for name, shape in expected.items()):
         raise ClassifierError("the metadata does not fit the graph", where=where)
     return dict(metadata)
+
+
+def _checked_look(rendering: dict[str, Any], where: str | None) -> Look:
+    """Return the look that the metadata names; an error names the file, not a setting that nobody has made."""
+    try:
+        return Look.from_dict(rendering)
+    except ClassifierError as error:
+        raise ClassifierError(f"the metadata is damaged: {error}", where=where) from error
 
 
 def _first_line(error: Exception) -> str:
