@@ -9,8 +9,10 @@ LEARNING_VERSION: Final = 3
 def learning_versions() -> list[int]:
     """What a classifier that is kept has to have been made by, to be worth keeping."""
     from shapewright.classification.file_format import FORMAT_VERSION
+    from shapewright.classification.readings import VERSION as READINGS_VERSION
     from shapewright.distances.descriptor_files import descriptor_version
     from shapewright.training import negatives
+    from shapewright.training.broken.breaking import VERSION as BREAKS_VERSION
     from shapewright.training.chunks import PICTURES_VERSION
     from shapewright.training.sources import MESHES_VERSION
 
@@ -19,6 +21,8 @@ def learning_versions() -> list[int]:
         LEARNING_VERSION,
         PICTURES_VERSION,
         MESHES_VERSION,
+        READINGS_VERSION,
+        BREAKS_VERSION,
         negatives.VERSION,
         negatives.MIXED_VERSION,
         descriptor_version(),

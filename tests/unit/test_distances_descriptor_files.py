@@ -105,6 +105,15 @@ def test_a_worker_builds_the_bank_anew(tmp_path: Path, next_version: Callable[[]
     assert stored_bank(context, SLAB, settings) is None
 
 
+@pytest.mark.parametrize("module", ["shapewright.classification.readings", "shapewright.training.broken.breaking"])
+def test_a_kept_classifier_is_trained_anew_after_other_readings_and_breaks(
+    monkeypatch: pytest.MonkeyPatch, module: str
+) -> None:
+    before = learning_versions()
+    monkeypatch.setattr(f"{module}.VERSION", 99)
+    assert learning_versions() != before
+
+
 def test_a_kept_classifier_is_trained_anew(next_version: Callable[[], None]) -> None:
     before = learning_versions()
     next_version()
