@@ -16,7 +16,10 @@ _LEAST_POINTS: Final = 50
 
 
 def keep_visible(mesh: TriangleMesh, rng: np.random.Generator) -> PointCloud:
-    """Keep the points that lie in front, seen along a random direction, and move them as coarse pixels would."""
+    """Keep the points that lie in front, seen along a random direction; that direction becomes -z.
+
+    An object of which hardly anything would be left stays whole.
+    """
     points = dense_points(mesh) @ Rotation.random(rng=rng).as_matrix().T
     low, high = points.min(axis=0), points.max(axis=0)
     side = float((high - low)[:2].max()) / int(rng.integers(PIXELS[0], PIXELS[1] + 1))
