@@ -68,7 +68,8 @@ def test_a_point_cloud_is_not_estimated(service: LiveService) -> None:
     assert "point cloud" in told["detail"]
     many = {"mesh_ids": [mesh, cloud], "model_id": model}
     problem(service.client.post("/v1/collection-estimations", json=many), 422, "mesh_ids[1]")
-    assert service.client.get("/v1/jobs").json()["items"] == []
+    for asked in ("estimations", "collection-estimations"):
+        assert service.client.get(f"/v1/{asked}").json()["items"] == []
 
 
 def test_the_same_bytes_are_the_same_mesh(service: LiveService) -> None:
