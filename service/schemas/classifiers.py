@@ -63,7 +63,9 @@ class TrainingSettingsIn(InBody):
     )
     subdivision_steps: Annotated[int, Field(ge=0, le=3)] | None = None
     broken: Annotated[float, Field(ge=0, le=0.7)] | None = Field(
-        default=None, description="Share of the variations that are broken as scans and careless exports are."
+        default=None,
+        description="Share of the variations that are broken as scans and careless exports are; 0 for pictures of "
+        "triangles.",
     )
     breaks: (
         Annotated[list[Literal["noise", "holes", "one_sided", "rounded", "sparse", "blocks"]], Field(max_length=6)]

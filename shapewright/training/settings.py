@@ -41,7 +41,8 @@ class TrainingSettings:
         framing: how an object is put into its picture.
         window: half the side of a picture in units of the scaled object.
         subdivision_steps: of the variations' surfaces.
-        broken: share of the variations that are broken before they are drawn, as scans and careless exports are.
+        broken: share of the variations that are broken before they are drawn, as scans and careless exports are; 0 for
+            styles of triangles.
         breaks: ways to break them, the hardest more often, among
             :data:`shapewright.training.broken.BREAK_NAMES`.
 
@@ -78,6 +79,7 @@ class TrainingSettings:
         sizes = BACKBONES[self.backbone].sizes
         if self.image_size == 0:
             object.__setattr__(self, "image_size", sizes.usual)
+        most_broken = MOST_BROKEN if self.style == "splats" else 0.0  # points without faces are what most breaks leave
         checks = {
             "variations": (self.variations >= 2, "at least 2: one to learn from, one held out"),
             "images_per_variation": (self.images_per_variation >= 1, "at least 1"),
@@ -92,7 +94,7 @@ class TrainingSettings:
             "batch_size": (self.batch_size >= 1, "at least 1"),
             "seed": (self.seed >= 0, "not negative"),
             "subdivision_steps": (0 <= self.subdivision_steps <= 3, "from 0 to 3"),
-            "broken": (0 <= self.broken <= MOST_BROKEN, f"from 0 to {MOST_BROKEN}"),
+            "broken": (0 <= self.broken <= most_broken, f"from 0 to {MOST_BROKEN}; 0 for pictures of triangles"),
             "breaks": (
                 set(self.breaks) <= set(BREAK_NAMES) and len(set(self.breaks)) == len(self.breaks),
                 f"each of {list(BREAK_NAMES)} once at most",

@@ -2671,7 +2671,7 @@ export interface components {
             subdivision_steps?: number | null;
             /**
              * Broken
-             * @description Share of the variations that are broken as scans and careless exports are.
+             * @description Share of the variations that are broken as scans and careless exports are; 0 for pictures of triangles.
              */
             broken?: number | null;
             /**
