@@ -47,10 +47,10 @@ from shapewright.estimation.settings import EstimatorName, ModelPoints
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling import ProceduralModel
 from shapewright.modeling.units import KINDS
-from shapewright.rendering import STYLES
-from shapewright.rendering.styles import FRAMINGS
+from shapewright.rendering.styles import FRAMINGS, PICTURE_STYLES
 from shapewright.retrieval.ranking import EVIDENCE
 from shapewright.training import TrainingSettings
+from shapewright.training.broken import BREAK_NAMES, MOST_BROKEN
 
 
 def test_the_published_descriptions_are_fresh() -> None:
@@ -71,7 +71,11 @@ def test_choices_are_those_of_the_library() -> None:
             schema.model_json_schema()["properties"][name]["anyOf"][0]["const"]
         }
 
-    assert choices(TrainingSettingsIn, "style") == set(STYLES)
+    assert choices(TrainingSettingsIn, "style") == set(PICTURE_STYLES)
+    breaks = TrainingSettingsIn.model_json_schema()["properties"]["breaks"]["anyOf"][0]
+    assert set(breaks["items"]["enum"]) == set(BREAK_NAMES)
+    assert breaks["maxItems"] == len(BREAK_NAMES)
+    assert TrainingSettingsIn.model_json_schema()["properties"]["broken"]["anyOf"][0]["maximum"] == MOST_BROKEN
     assert choices(TrainingSettingsIn, "framing") == set(FRAMINGS)
     assert choices(EstimationSettingsIn, "estimator") == set(get_args(EstimatorName))
     assert choices(EstimationSettingsIn, "model_points") == set(get_args(ModelPoints))

@@ -220,7 +220,7 @@ def test_metadata_tells_where_a_classifier_comes_from(trained):
     assert result.metadata["backbone"]["weights_sha256"] == load_backbone().weights_sha256
     assert result.metadata["settings"]["seed"] == 3
     rendering = result.metadata["rendering"]
-    assert (rendering["style"], rendering["framing"], rendering["window"]) == ("fused", "sphere", 1.0)
+    assert (rendering["style"], rendering["framing"], rendering["window"]) == ("splats", "sphere", 1.0)
     assert rendering["scale_range"] == [0.7, 1.0]
     assert [model["digest"] for model in result.metadata["models"]] == list(result.exemplars.digests)
     assert set(result.metadata["known"]) == {"pictures", "geometry"}
@@ -256,6 +256,10 @@ def test_a_class_needs_models_and_not_too_many():
         ("seed", -1),
         ("backbone", "none"),
         ("subdivision_steps", 9),
+        ("broken", -0.1),
+        ("broken", 0.71),
+        ("breaks", ("noise", "rust")),
+        ("breaks", ("noise", "holes", "noise")),
     ],
 )
 def test_settings_that_make_no_sense_are_refused(name, value):
@@ -274,12 +278,23 @@ def test_settings_that_make_no_sense_are_refused(name, value):
         ("scale_range", [1, "x"]),
         ("exemplars", 1),
         ("style", 2),
+        ("broken", "much"),
+        ("breaks", "noise"),
+        ("breaks", [1]),
     ],
 )
 def test_settings_from_json_are_checked(name, value):
     with pytest.raises(ClassifierError) as caught:
         TrainingSettings.from_dict({name: value})
     assert caught.value.where == name
+
+
+@pytest.mark.parametrize("style", ["fused", "lambert"])
+def test_pictures_of_triangles_are_learned_from_whole_variations_alone(style: str):
+    with pytest.raises(ClassifierError, match="0 for pictures of triangles") as caught:
+        TrainingSettings(style=style)
+    assert caught.value.where == "broken"
+    assert TrainingSettings(style=style, broken=0.0).style == style
 
 
 def test_settings_need_no_heavy_package():
@@ -296,6 +311,9 @@ assert not {"torch", "onnx", "onnxruntime", "moderngl"} & set(sys.modules)
 def test_settings_from_json_keep_defaults():
     assert TrainingSettings.from_dict({}) == TrainingSettings()
     assert TrainingSettings.from_dict({"scale_range": [1, 2], "seed": 3}).scale_range == (1.0, 2.0)
+    assert TrainingSettings.from_dict({"breaks": ["sparse", "noise"]}).breaks == ("sparse", "noise")
+    chosen = TrainingSettings(broken=0.25, breaks=("holes",))
+    assert TrainingSettings.from_dict(json.loads(json.dumps(chosen.to_dict()))) == chosen
 
 
 def test_the_papers_settings_are_the_papers():
@@ -304,6 +322,7 @@ def test_the_papers_settings_are_the_papers():
     assert (paper.framing, paper.window, paper.scale_range) == ("paper", 2.0, (0.8, 2.0))
     assert paper.negatives == 0
     assert not paper.exemplars
+    assert (paper.style, paper.broken) == ("lambert", 0.0)
 
 
 def test_calibration_error_is_the_gap_between_sureness_and_truth():
