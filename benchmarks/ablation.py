@@ -4,8 +4,9 @@ One JSON document: for each choice the accuracy within the classes, known agains
 precision, by pictures alone and with geometry; means over the seeds. Every line is trained anew from variations of the
 shipped models, fewer than the paper's so that all lines together take about an hour on two cores. Meshes are read once.
 ``--only`` takes some of the lines. Nothing is tuned here: the lines are what a user can choose.
-*The paper's own configuration* is what ours is compared with: Inception, the paper's framing and light, random views,
-no objects of no class, no geometry. The lines with Inception need ``scripts/backbone-inception``.
+*Splats, whole variations* against the default is what broken variations bring, against *fused, whole variations* what
+splats bring. *The paper's own configuration* is what ours is compared with: Inception, the paper's framing and light,
+random views, no objects of no class, no geometry. The lines with Inception need ``scripts/backbone-inception``.
 """
 
 import argparse
@@ -33,7 +34,7 @@ Meshes = list[tuple[LabelledFile, TriangleMesh]]
 VIEWS = (1, 3, 10, 20)
 PAPER_BACKBONE = "inception_v3"
 """The paper's network up to the block that its published weights know from ImageNet alone."""
-STYLES = ("fused", "edges", "lambert", "depth", "normals", "shaded")
+STYLES = ("splats", "fused", "edges", "lambert", "depth", "normals", "shaded")
 
 
 def lines(base: TrainingSettings) -> dict[str, TrainingSettings]:
@@ -49,8 +50,10 @@ def lines(base: TrainingSettings) -> dict[str, TrainingSettings]:
         "inception_v3": replace(base, backbone="inception_v3", image_size=0),
         "the paper's own configuration": TrainingSettings.paper(**few, backbone=PAPER_BACKBONE),
         "the paper's framing, one light": TrainingSettings.paper(**few),
-        "the paper's framing, fused": replace(base, framing="paper", window=2.0, scale_range=(0.8, 2.0)),
-        **{f"shading {style}": replace(base, style=style) for style in STYLES if style != base.style},
+        "the paper's framing, fused": replace(
+            base, style="fused", broken=0.0, framing="paper", window=2.0, scale_range=(0.8, 2.0)
+        ),
+        **{f"{style}, whole variations": replace(base, style=style, broken=0.0) for style in STYLES},
     }
 
 

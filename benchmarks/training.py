@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 
 from cli.sources import load_classes, load_negatives
+from shapewright.classification.pictures import draw
 from shapewright.modeling import CompiledModel
 from shapewright.network import FeatureExtractor, load_backbone
 from shapewright.progress import CallbackProgress, Progress
-from shapewright.rendering import render_images, renderer_name
 from shapewright.training import FolderStore, TrainingSettings, train_classifier
 from shapewright.training.chunks import chunks_of
 from shapewright.training.sources import ModelSource
@@ -66,24 +66,15 @@ def one_by_one(classes: dict[str, list[CompiledModel]], settings: TrainingSettin
     """Images a second when every picture is drawn and described alone, in floating point."""
     extractor = FeatureExtractor(load_backbone("efficientnet_lite0"), threads=2)
     count = 0
-    extractor(np.zeros((1, 224, 224, 3), dtype=np.uint8))
+    extractor(np.zeros((1, settings.image_size, settings.image_size, 3), dtype=np.uint8))
+    shown = np.zeros(1, dtype=np.int64)
     started_s = time.perf_counter()
     for models in classes.values():
         chunk = chunks_of(ModelSource(models[0]), each)[0]
         rotations, scales = chunk.views(settings)
-        for number, mesh in enumerate(chunk.meshes(settings)):
+        for number, learned in enumerate(chunk.objects(settings)):
             for rotation, scale in zip(rotations[number], scales[number], strict=True):
-                picture = render_images(
-                    [mesh],
-                    None,
-                    rotation[None],
-                    scale[None],
-                    size=224,
-                    style=settings.style,
-                    window=settings.window,
-                    framing=settings.framing,
-                )
-                extractor(picture)
+                extractor(draw([learned], rotation[None], scale[None], settings.look, shown=shown))
                 count += 1
     return count / (time.perf_counter() - started_s)
 
@@ -111,7 +102,6 @@ def main() -> None:
     document = {
         "machine": platform.machine(),
         "cores": os.cpu_count(),
-        "renderer": renderer_name(),
         "classes": len(classes),
         "training": figures,
         "images_per_second": round(rate, 1),
