@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from chair_model import armchair
 
+from shapewright.classification.pictures import draw
 from shapewright.classification.series import series_generators
 from shapewright.distances.alignment import Pose, rotations_24
 from shapewright.distances.panorama import panorama_descriptor, panorama_descriptors
@@ -15,7 +16,7 @@ from shapewright.estimation.prepared_query import PreparedQuery
 from shapewright.estimation.query import Query
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling import CompiledModel, compile_model
-from shapewright.rendering import render_images
+from shapewright.rendering.styles import PictureStyle
 from shapewright.training import TrainingSettings
 from shapewright.training.chunks import Chunk, chunk_images
 from shapewright.training.sources import ModelSource
@@ -39,19 +40,18 @@ def rebuilt_from_scratch(chair: CompiledModel, row: np.ndarray) -> TriangleMesh:
     return TriangleMesh(chair.surface_points(row[None])[0], chair.surface_triangles()).cleaned()
 
 
-def test_learning_pictures_are_those_of_single_instances(chair: CompiledModel) -> None:
+@pytest.mark.parametrize("style", ["splats", "fused"])
+def test_learning_pictures_are_those_of_single_instances(chair: CompiledModel, style: PictureStyle) -> None:
     count = 16
-    settings = TrainingSettings(images_per_variation=2, image_size=96)
+    settings = TrainingSettings(images_per_variation=2, image_size=96, style=style, broken=0.0)
     source = ModelSource(chair)
     chunk = Chunk(source, 0, count)
     values = source.values(series_generators(settings.seed, source.digest, 0)[0], count)
     rotations, scales = chunk.views(settings)
     assert not chair.parts_present(values).all()
     alone = [chair.instance(row) for row in values]
-    pictures = render_images(
-        alone, None, rotations.reshape(-1, 3, 3), scales.reshape(-1), objects=np.repeat(np.arange(count), 2), size=96,
-        style=settings.style, window=settings.window, framing=settings.framing,
-    )  # fmt: skip
+    shown = np.repeat(np.arange(count), 2)
+    pictures = draw(alone, rotations.reshape(-1, 3, 3), scales.reshape(-1), settings.look, shown=shown)
     np.testing.assert_array_equal(chunk_images(chunk, settings), pictures)
 
 

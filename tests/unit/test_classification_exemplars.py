@@ -16,10 +16,11 @@ from shapewright.errors import ClassifierError
 from shapewright.mapped_arrays import read_arrays, read_header, write_arrays
 from shapewright.modeling import compile_model
 from shapewright.training import TrainingSettings
+from shapewright.training.broken.breaking import is_broken
 from shapewright.training.dataset import plan_learning
 from shapewright.training.exemplars import exemplars_of, representatives
 
-SETTINGS = TrainingSettings(variations=5, negatives=0, subdivision_steps=1, seed=4)
+SETTINGS = TrainingSettings(variations=5, negatives=0, subdivision_steps=1, seed=4, broken=0.0)
 NAMES = ("classes", "models", "numbers", "levels", "largest")
 
 
@@ -50,6 +51,15 @@ def test_rows_tell_where_they_come_from(exemplars: Exemplars, classes) -> None:
     assert exemplars.numbers.tolist() == [0, 1, 2, 0, 1, 0, 1, 2, 3, 4]
     generators = [generator for generators in classes.values() for generator in generators]
     assert exemplars.digests == tuple(generator.model.digest for generator in generators)
+
+
+def test_whole_variations_alone_are_exemplars(exemplars: Exemplars, classes) -> None:
+    found = described(classes, replace(SETTINGS, broken=0.6))
+    whole = [row for row, number in enumerate(exemplars.numbers) if not is_broken(int(number), 0.6)]
+    assert len(found) == len(whole) < len(exemplars)
+    assert set(found.models.tolist()) == {0, 1, 2}, "the first variation of each model is whole"
+    for name in ("classes", "models", "numbers", "descriptors"):
+        assert np.array_equal(getattr(found, name), getattr(exemplars, name)[whole])
 
 
 def test_an_exemplars_parameters_are_those_of_its_mesh(exemplars: Exemplars, classes) -> None:

@@ -6,12 +6,16 @@ import numpy as np
 import pytest
 from simple_shapes import BoxModel, toy_classes
 
+from shapewright.classification.readings import plain_reading
 from shapewright.classification.series import SERIES
+from shapewright.distances.panorama import panorama_descriptor
 from shapewright.errors import Cancelled, ClassifierError
+from shapewright.mesh import PointCloud, TriangleMesh
 from shapewright.network import FeatureExtractor, load_backbone
 from shapewright.progress import CallbackProgress
 from shapewright.training import FolderStore, MemoryStore, TrainingSettings, learning
 from shapewright.training.array_store import ArrayStore
+from shapewright.training.broken.breaking import is_broken
 from shapewright.training.chunks import (
     Chunk,
     chunk_images,
@@ -61,8 +65,8 @@ def test_a_shorter_chunk_is_the_beginning_of_a_longer_one(source: Source) -> Non
     long, short = Chunk(source, 1, 5), Chunk(source, 1, 2)
     pictures = chunk_images(long, SMALL)
     drawn = chunk_images(short, SMALL)
-    differing = (drawn != pictures[: len(drawn)]).mean()
-    assert differing < 1e-3, "but for the rounding at edges of pictures that lie elsewhere in the atlas"
+    assert np.array_equal(drawn, pictures[: len(drawn)])
+    assert np.array_equal(short.broken(SMALL), long.broken(SMALL)[:2])
     for one, other in zip(short.meshes(SMALL), long.meshes(SMALL), strict=False):
         assert np.array_equal(one.vertices, other.vertices)
         assert np.array_equal(one.faces, other.faces)
@@ -70,6 +74,65 @@ def test_a_shorter_chunk_is_the_beginning_of_a_longer_one(source: Source) -> Non
         assert np.array_equal(one, other[:2])
     assert not np.array_equal(chunk_images(Chunk(source, 0, 5), SMALL), pictures), "another chunk, other meshes"
     assert not np.array_equal(chunk_images(long, replace(SMALL, seed=4)), pictures)
+
+
+def test_pictures_of_triangles_do_not_depend_on_those_beside_them() -> None:
+    settings = replace(SMALL, style="fused", broken=0.0)
+    pictures, drawn = (chunk_images(Chunk(SOURCES[0], 1, count), settings) for count in (5, 2))
+    differing = (drawn != pictures[: len(drawn)]).mean()
+    assert differing < 1e-3, "but for the rounding at edges of pictures that lie elsewhere in the atlas"
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda source: source.name)
+def test_objects_are_the_meshes_but_for_the_broken_ones(source: Source) -> None:
+    chunk = Chunk(source, 0, 10)
+    flags = chunk.broken(SMALL)
+    assert flags.tolist() == [is_broken(number, SMALL.broken) for number in range(10)]
+    assert 3 <= flags.sum() <= 8
+    for mesh, learned, is_one in zip(chunk.meshes(SMALL), chunk.objects(SMALL), flags, strict=True):
+        same = (
+            isinstance(learned, TriangleMesh)
+            and np.array_equal(learned.vertices, mesh.vertices)
+            and np.array_equal(learned.faces, mesh.faces)
+        )
+        assert same != is_one
+    for one, again in zip(chunk.objects(SMALL), chunk.objects(SMALL), strict=True):
+        assert np.array_equal(_positions(one), _positions(again))
+    other = replace(SMALL, seed=4, breaks=("sparse",))
+    clouds = [one for one in chunk.objects(other) if isinstance(one, PointCloud)]
+    assert len(clouds) == flags.sum()
+    assert len({len(cloud.points) for cloud in clouds}) == len(clouds), "each is broken in its own way"
+
+
+def _positions(one: TriangleMesh | PointCloud) -> np.ndarray:
+    return one.points if isinstance(one, PointCloud) else one.vertices
+
+
+@pytest.mark.parametrize("change", [{"broken": 0.0}, {"breaks": ()}])
+def test_without_breaks_all_meshes_stay_whole(change: dict) -> None:
+    chunk, settings = Chunk(SOURCES[0], 0, 10), replace(SMALL, **change)
+    assert not chunk.broken(settings).any()
+    for mesh, learned in zip(chunk.meshes(settings), chunk.objects(settings), strict=True):
+        assert np.array_equal(_positions(learned), mesh.vertices)
+
+
+def test_descriptors_are_of_the_objects_as_they_are_learned_from() -> None:
+    chunk, store = Chunk(SOURCES[0], 0, 5), MemoryStore()
+    store_chunk(chunk, SMALL, FeatureExtractor(load_backbone()), store, described=True)
+    stored = store.get(descriptors_key(chunk, SMALL))
+    assert stored is not None
+    for one, row in zip(chunk.objects(SMALL), stored, strict=True):
+        surface = plain_reading(one).described_surface()
+        assert np.array_equal(panorama_descriptor(surface.vertices, surface.faces).to_array(), row)
+
+
+def test_a_name_of_descriptors_says_all_that_they_depend_on() -> None:
+    chunk = Chunk(SOURCES[0], 0, 3)
+    changes = ({}, {"seed": 4}, {"subdivision_steps": 1}, {"broken": 0.3}, {"breaks": ("noise",)})
+    keys = [descriptors_key(chunk, replace(SMALL, **change)) for change in changes]
+    assert len(set(keys)) == len(keys)
+    for change in ({"image_size": 96}, {"images_per_variation": 3}, {"scale_range": (0.5, 1.0)}, {"epochs": 9}):
+        assert descriptors_key(chunk, replace(SMALL, **change)) == keys[0], "geometry has no pictures"
 
 
 @pytest.mark.parametrize("count", [1, SERIES - 1, SERIES, SERIES + 1, 3 * SERIES])
@@ -100,10 +163,13 @@ def test_a_name_says_all_that_the_features_depend_on() -> None:
             {"images_per_variation": 3},
             {"image_size": 96},
             {"scale_range": (0.5, 1.0)},
-            {"style": "depth"},
-            {"framing": "paper"},
-            {"window": 2.0},
+            {"style": "depth", "broken": 0.0},
+            {"style": "fused", "broken": 0.0},
+            {"style": "fused", "broken": 0.0, "framing": "paper"},
+            {"style": "fused", "broken": 0.0, "window": 2.0},
             {"subdivision_steps": 1},
+            {"broken": 0.3},
+            {"breaks": ("noise",)},
         )
     ]
     keys.append(features_key(chunk, SMALL, load_backbone("efficientnet_lite0_random")))
@@ -124,7 +190,8 @@ def test_what_is_stored_is_not_computed_again(seen) -> None:
     assert again.onnx != first.onnx
     with_exemplars = train_classifier(toy_classes(), replace(SMALL, exemplars=True), store=store)
     assert sum(seen) == pictures, "descriptors need no pictures"
-    assert len(with_exemplars.exemplars) == 18
+    whole = [number for number in range(6) if not is_broken(number, SMALL.broken)]
+    assert with_exemplars.exemplars.numbers.tolist() == 3 * whole
 
 
 def test_a_training_goes_on_where_it_was_cancelled(seen, tmp_path) -> None:
