@@ -1,5 +1,4 @@
-"""Reading a query: from a mesh or a point cloud, clean or not, to the points that are drawn and the surface that is
-compared (ours).
+"""Readings of a query: points to draw and a surface to compare, of meshes and point clouds, clean or not (ours).
 
 Noise is smoothed, debris beside the object goes. Where an object may stand on the ground, there is a second reading
 without it; which of the two is right, the classes decide.
@@ -16,6 +15,7 @@ from shapewright.distances.even_places import even_places
 from shapewright.errors import MeshError
 from shapewright.estimation.noise import without_noise
 from shapewright.mesh import PointCloud, TriangleMesh
+from shapewright.mesh.places import first_at_place
 from shapewright.mesh.surfels import surfels
 from shapewright.mesh.surroundings import is_debris, is_ground
 from shapewright.rendering.splats import RADIUS, SplatCloud, splat_cloud
@@ -39,7 +39,7 @@ class Reading:
     Args:
         points: on the surface, in the query's unit.
         spacing: side of the square that each point has to itself on the surface.
-        surface: the mesh that the points lie on; ``None`` of a point cloud.
+        surface: the mesh that the points lie on; ``None`` for a point cloud.
     """
 
     points: Float[np.ndarray, "N 3"]
@@ -68,12 +68,15 @@ def plain_reading(query: TriangleMesh | PointCloud) -> Reading:
     """Read a query as it is; the same each time.
 
     Raises:
-        MeshError: a mesh without area.
+        MeshError: a mesh without area, or points that are all at one place.
     """
     if isinstance(query, PointCloud):
         points = query.points
         if len(points) > MOST_POINTS:  # at random: every tenth point of a scanner's rows would be a pattern
             points = np.random.default_rng(0).choice(points, MOST_POINTS, replace=False)
+        points = points[first_at_place(points) == np.arange(len(points))]  # repeated ones have no distance
+        if len(points) == 1:
+            raise MeshError("all points are at one place", where="points")
         return Reading(points, _cloud_spacing(points), None)
     return _mesh_reading(query)[0]
 
@@ -82,7 +85,7 @@ def readings(query: TriangleMesh | PointCloud) -> list[Reading]:
     """Read a query that may be a scan: without noise and debris, and once more without ground if it may have some.
 
     Raises:
-        MeshError: a mesh without area.
+        MeshError: a mesh without area, or points that are all at one place.
     """
     if isinstance(query, PointCloud):
         whole = plain_reading(query)
