@@ -36,7 +36,7 @@ def test_toy_classes_are_learned(trained):
     result, _ = trained
     assert result.class_names == ("bench", "cross", "block")
     assert result.metrics["held_out_accuracy"] == 1.0
-    assert result.metrics["held_out_image_accuracy"] >= 0.9
+    assert result.metrics["held_out_image_accuracy"] >= 0.8, "some pictures show what is left of a broken variation"
     assert result.metrics["images"] == (3 * 12 + 6 + 3 + 2) * 3, "classes, assemblies, distorted and mixed"
     assert result.metrics["held_out_variations"] == 3 * 3
     assert np.trace(result.metrics["confusion"]) == 9
@@ -48,8 +48,9 @@ def test_toy_classes_are_learned(trained):
 def test_random_weights_do_badly_on_the_same_pictures():
     # The control: if this passed with random weights, the test above would say nothing about the backbone.
     settings = TrainingSettings(
-        variations=12, images_per_variation=3, image_size=128, held_out=0.5, epochs=40, negatives=0, exemplars=False
-    )
+        variations=12, images_per_variation=3, image_size=128, held_out=0.5, epochs=40, negatives=0, exemplars=False,
+        broken=0.0,
+    )  # fmt: skip
     store, accuracy = MemoryStore(), {}
     for name in ("efficientnet_lite0_int8", "efficientnet_lite0_random"):
         chosen = replace(settings, backbone=name)
