@@ -42,7 +42,7 @@ ENV PATH=/opt/shapewright/bin:$PATH \
     SHAPEWRIGHT_DATA_DIR=/data
 USER shapewright
 # kernels compiled for the processor that builds the image; another kind compiles its own when they are first called
-RUN python -m shapewright.estimation.fast.warm_up
+RUN python -m shapewright.classification.warm_up && python -m shapewright.estimation.fast.warm_up
 WORKDIR /data
 VOLUME /data
 EXPOSE 8000
