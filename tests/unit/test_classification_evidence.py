@@ -88,7 +88,7 @@ def test_the_curve_separates_and_is_one_half_between(middle, gap, seed, counts) 
 
 
 @pytest.mark.parametrize("distance", [1.0, 2.0, 4.0])
-def test_the_curve_of_kinds_that_overlap_refuses_nine_of_ten_of_no_class(distance: float) -> None:
+def test_the_curve_of_kinds_that_overlap_refuses_most_objects_of_no_class(distance: float) -> None:
     rng = np.random.default_rng(0)
     known, unknown = rng.normal(distance / 2, 1.0, 4000), rng.normal(-distance / 2, 1.0, 4000)
     curve = fit_known_curve(np.concatenate([known, unknown]), np.arange(8000) < 4000)
