@@ -78,7 +78,7 @@ def test_an_object_in_many_pieces_keeps_them() -> None:
     assert not is_debris(points, 0.03).any()
 
 
-@pytest.mark.parametrize("away", [1e3, 1e9, 1e15])
+@pytest.mark.parametrize("away", [1e3, 1e15, 1e21])
 def test_one_point_far_away_does_not_hide_a_clump(away: float) -> None:
     # The grid must neither overflow nor be as coarse as all there is.
     points = np.concatenate([ball(3000, 1.0, (0, 0, 0)), ball(30, 0.05, (1.6, 0, 0)), [[-away, away, 0.0]]])
