@@ -1,6 +1,6 @@
 """Compile what a classification runs before the first query comes: ``python -m shapewright.classification.warm_up``.
 
-As :mod:`shapewright.estimation.fast.warm_up` does for estimations; it takes about ten seconds of one processor.
+As :mod:`shapewright.estimation.fast.warm_up` does for estimations; it takes about twenty seconds of one processor.
 """
 
 import numpy as np
