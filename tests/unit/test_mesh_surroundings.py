@@ -65,7 +65,7 @@ def test_clumps_beside_a_mesh_are_debris(shape: TriangleMesh) -> None:
     assert found.any()
 
 
-@pytest.mark.parametrize("share", [0.5, 0.1, 0.03])
+@pytest.mark.parametrize("share", [0.5, 0.2, 0.1])
 def test_a_large_second_piece_is_no_debris(share: float) -> None:
     # The leg of a table that the scanner saw apart from the rest is part of the table.
     points = np.concatenate([ball(3000, 1.0, (0, 0, 0)), ball(int(3000 * share), share**0.5, (2.5, 0, 0))])
