@@ -15,6 +15,8 @@ from shapewright.mesh import PointCloud, TriangleMesh
 class Asked(ExtentClassifier):
     """What is asked is kept."""
 
+    exemplars = None
+
     def __init__(self) -> None:
         super().__init__()
         self.queries: list[TriangleMesh | PointCloud] = []
