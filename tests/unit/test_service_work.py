@@ -136,6 +136,13 @@ RESULT: dict[str, Any] = {
     "fits": [
         {"class_name": "crate", "model_id": "a" * 64, "values": [0.9], "distance": 0.2, "exemplar_distance": 0.25}
     ],
+    "neighbor": {
+        "class_name": "crate",
+        "model_id": "a" * 64,
+        "exemplar": 3,
+        "distance": 0.2,
+        "usual_distance": 0.15,
+    },
     "per_view": [[0.2, 0.8], [0.3, 0.7]],
     "seconds": 0.1,
 }
@@ -181,7 +188,7 @@ def test_an_answer_of_an_older_version_can_be_read(service: LiveService) -> None
         accepted["job"]["id"], partial(catalog.record_classification, identifier=accepted["id"], result=result)
     )
     done = service.client.get(accepted["url"]).json()
-    absent = dict.fromkeys(("answer", "known", "picture_probabilities", "distances", "fits"))
+    absent = dict.fromkeys(("answer", "known", "picture_probabilities", "distances", "fits", "neighbor"))
     assert done["result"] == result | absent
     assert done["pictures_url"] is None
     problem(service.client.get(f"{accepted['url']}/pictures"), 404)
