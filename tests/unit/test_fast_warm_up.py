@@ -1,4 +1,4 @@
-"""Warming up compiles every kernel of the fast estimator, and other processes load them."""
+"""Warming up compiles every kernel of the fast estimator and of classification, and other processes load them."""
 
 import multiprocessing
 from collections.abc import Callable
@@ -11,6 +11,7 @@ from typing import TypeVar
 import pytest
 from numba.core.dispatcher import Dispatcher
 
+from shapewright.classification.warm_up import warm_up as warm_up_classification
 from shapewright.estimation.fast.warm_up import load_kernels, warm_up
 
 Result = TypeVar("Result")
@@ -63,3 +64,9 @@ def test_kernels_that_were_never_compiled_stay_so(tmp_path: Path, monkeypatch: p
     assert not possible
     assert "sample_surface" not in idle
     assert "score_rotations" in idle
+
+
+def test_every_kernel_that_a_classification_calls_is_compiled() -> None:
+    warm_up_classification()
+    assert idle_kernels("shapewright.rendering.splat_kernels") == []
+    assert not {"describe", "distances"} & set(idle_kernels("shapewright.distances.panorama_kernel"))
