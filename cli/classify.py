@@ -40,7 +40,7 @@ def classify(
     pictures: Annotated[
         Path | None,
         typer.Option(
-            help="Folder for a PNG of each mesh as the classifier saw it, and of what is nearest to each unknown one.",
+            help="Folder for PNGs: each mesh as the classifier saw it, and the nearest variation of each unknown one.",
             show_default=False,
         ),
     ] = None,

@@ -1,6 +1,6 @@
 """The classifier that ships: ``python -m cli.ready_classifier`` makes it, ``--check`` tells whether it is up to date.
 
-It learns every shipped class but the further objects, which teach it what is unknown.
+It learns every class that ships, except the further objects: these teach it what is unknown.
 """
 
 import argparse
@@ -14,7 +14,7 @@ from cli.learning import learn, save_classifier
 from cli.sources import load_classes, load_negatives
 from models_store.library.shipped import list_classes, list_further_classes, load_shipped
 from shapewright.classification import exemplars_file, load_classifier
-from shapewright.classification.ready import ready_classifier_place
+from shapewright.classification.ready_files import ready_classifier_place
 from shapewright.errors import ClassifierError, ShapewrightError
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def make(output: Path, settings: "TrainingSettings", cache: Path | None = None) 
 
 
 def faults(file: Path, settings: "TrainingSettings") -> list[str]:
-    """Return what is wrong with a classifier as the one that ships; nothing if it is up to date."""
+    """Return the reasons why a classifier should not ship as it is; an empty list if it is up to date."""
     try:
         classifier = load_classifier(file)
     except ClassifierError as error:

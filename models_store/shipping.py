@@ -1,16 +1,17 @@
-"""Adds what ships to a database: the procedural models with their thumbnails, and the ready classifier."""
+"""Seeding of a database with the shipped models, their thumbnails and the ready classifier."""
 
 import hashlib
 from collections.abc import Mapping
 from datetime import datetime
-from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from models_store import catalog
 from models_store.artifacts import ArtifactStore
 from models_store.catalog import ShippedItem, ShippedKind
-from models_store.library.shipped import CLASSIFIER, EXEMPLARS, list_shipped, ready_folder, thumbnail_png
+from models_store.library.shipped import list_shipped, thumbnail_png
 from models_store.session import Database
+from shapewright.classification.file_format import exemplars_file, read_metadata
+from shapewright.classification.ready_files import READY_FILE, ready_classifier_place
 from shapewright.errors import ClassifierError
 
 READY_NAME = "ready"
@@ -19,7 +20,7 @@ READY_NAME = "ready"
 def add_shipped(
     database: Database, artifacts: ArtifactStore, *, now: datetime, ready_dir: Path | None = None
 ) -> list[str]:
-    """Add what ships and was never added to this database; return the names of what was added.
+    """Add the shipped models and the ready classifier that this database was never given; return the names of these.
 
     Several processes may do so at once. A new version of a model is added beside the older one, unless that was
     deleted. Where nothing is new, files are read and compared, and nothing is parsed or written.
@@ -36,11 +37,11 @@ def add_shipped(
     """
     documents = {name: document.read_bytes() for name, document in list_shipped().items()}
     added = _add_models(database, artifacts, documents, now)
-    folder = ready_folder() if ready_dir is None else ready_dir
-    if (folder / CLASSIFIER).is_file():
-        added += _add_classifier(database, artifacts, folder, now)
+    classifier = ready_classifier_place() if ready_dir is None else ready_dir / READY_FILE
+    if classifier.is_file():
+        added += _add_classifier(database, artifacts, classifier, now)
     elif ready_dir is not None:
-        raise ClassifierError("there is no such file", where=str(ready_dir / CLASSIFIER))
+        raise ClassifierError("the file does not exist", where=str(classifier))
     return added
 
 
@@ -69,15 +70,13 @@ def _add_models(
         ]
 
 
-def _add_classifier(database: Database, artifacts: ArtifactStore, folder: Traversable, now: datetime) -> list[str]:
-    onnx = (folder / CLASSIFIER).read_bytes()
-    exemplars = (folder / EXEMPLARS).read_bytes() if (folder / EXEMPLARS).is_file() else None
+def _add_classifier(database: Database, artifacts: ArtifactStore, file: Path, now: datetime) -> list[str]:
+    onnx, beside = file.read_bytes(), exemplars_file(file)
+    exemplars = beside.read_bytes() if beside.is_file() else None
     item = ShippedItem(ShippedKind.CLASSIFIER, READY_NAME, _sha256(onnx + (exemplars or b"")))
     with database.reading() as session:
         if not catalog.missing_shipped(session, [item]):
             return []
-    from shapewright.classification.file_format import read_metadata
-
     metadata = read_metadata(onnx)
     onnx_key = f"classifiers/{item.digest}-shipped.onnx"
     artifacts.put(onnx_key, onnx)

@@ -7,8 +7,8 @@ from typing import Any
 import onnx
 from onnx import helper
 
-from models_store.library.shipped import CLASSIFIER, EXEMPLARS
-from shapewright.classification.file_format import FORMAT, FORMAT_VERSION, METADATA_KEY
+from shapewright.classification.file_format import FORMAT, FORMAT_VERSION, METADATA_KEY, exemplars_file
+from shapewright.classification.ready_files import READY_FILE
 
 
 def write_ready_classifier(folder: Path, metadata: str | None = None, **changes: Any) -> Path:
@@ -26,6 +26,6 @@ def write_ready_classifier(folder: Path, metadata: str | None = None, **changes:
     model = helper.make_model(graph)
     helper.set_model_props(model, {"class_names": "[]", METADATA_KEY: metadata or json.dumps(described | changes)})
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / CLASSIFIER).write_bytes(model.SerializeToString())
-    (folder / EXEMPLARS).write_bytes(b"exemplars")
+    (folder / READY_FILE).write_bytes(model.SerializeToString())
+    exemplars_file(folder / READY_FILE).write_bytes(b"exemplars")
     return folder

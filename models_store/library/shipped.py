@@ -15,9 +15,6 @@ if TYPE_CHECKING:
 DOCUMENT = "model.json"
 ANNOTATIONS = "annotations.json"
 THUMBNAIL = "thumbnail.png"
-READY = "ready"
-CLASSIFIER = "classifier.onnx"
-EXEMPLARS = "classifier.exemplars.npz"
 
 
 def list_shipped() -> dict[str, Traversable]:
@@ -57,11 +54,6 @@ def thumbnail_png(name: str) -> bytes:
         ModelError: no model of this name ships.
     """
     return (_checked(name) / THUMBNAIL).read_bytes()
-
-
-def ready_folder() -> Traversable:
-    """Return the folder of the classifier that ships: :data:`CLASSIFIER` and :data:`EXEMPLARS`."""
-    return _library() / READY
 
 
 def _model_folders() -> dict[str, tuple[str, Traversable]]:

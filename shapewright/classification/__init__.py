@@ -8,31 +8,28 @@ from typing import TYPE_CHECKING
 from shapewright.lazy_names import lazy_names
 
 if TYPE_CHECKING:
+    from shapewright.classification.answer import Classification
     from shapewright.classification.class_instances import gather_instances, instances_of_each
-    from shapewright.classification.classifier import (
-        Classification,
-        Classifier,
-        exemplars_file,
-        files_digest,
-        load_classifier,
-    )
+    from shapewright.classification.classifier import Classifier, files_digest, load_classifier
     from shapewright.classification.evidence import UNKNOWN
     from shapewright.classification.exemplars import Exemplars
-    from shapewright.classification.ready import classify, load_ready_classifier, ready_classifier_file
+    from shapewright.classification.file_format import exemplars_file
+    from shapewright.classification.ready import classify, load_ready_classifier
+    from shapewright.classification.ready_files import ready_classifier_file
 
 _HOMES = {
-    "Classification": "classifier",
+    "Classification": "answer",
     "Classifier": "classifier",
     "Exemplars": "exemplars",
     "UNKNOWN": "evidence",
     "classify": "ready",
-    "exemplars_file": "classifier",
+    "exemplars_file": "file_format",
     "files_digest": "classifier",
     "gather_instances": "class_instances",
     "instances_of_each": "class_instances",
     "load_classifier": "classifier",
     "load_ready_classifier": "ready",
-    "ready_classifier_file": "ready",
+    "ready_classifier_file": "ready_files",
 }
 
 __all__ = [

@@ -1,36 +1,29 @@
 """Using a classifier: pictures by ONNX Runtime, geometry by exemplars, no torch (paper section 3.2, and beyond)."""
 
 import hashlib
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 import numpy as np
 from jaxtyping import Float, UInt8
 
-from shapewright.classification.evidence import (
-    KNOWN_THRESHOLD,
-    UNKNOWN,
-    KnownCurve,
-    class_probabilities,
-    class_scores,
-)
+from shapewright.classification.answer import Classification
+from shapewright.classification.checked_metadata import checked_metadata
+from shapewright.classification.evidence import KnownCurve, class_probabilities, class_scores
 from shapewright.classification.exemplars import Exemplars
-from shapewright.classification.file_format import FORMAT, FORMAT_VERSION, METADATA_KEY
+from shapewright.classification.file_format import exemplars_file
 from shapewright.classification.look import Look
 from shapewright.classification.neighbor import Neighbor
-from shapewright.classification.pictures import draw
-from shapewright.classification.readings import Reading, plain_reading, readings
-from shapewright.classification.synthesis import FITTED_CLASSES, Fit, fit_class
+from shapewright.classification.sights import Sight, sights_of
+from shapewright.classification.synthesis import FITTED_CLASSES, fit_class
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor
 from shapewright.errors import ClassifierError
 from shapewright.estimation.generator import InstanceGenerator
 from shapewright.mesh import PointCloud, TriangleMesh
 from shapewright.network.ports import IMAGES, OPEN_PROBABILITIES, PROBABILITIES
 from shapewright.network.session import BATCH_SIZE, make_session
-from shapewright.rendering.splats import splat_images
 from shapewright.rendering.views import spread_views
 
 DEFAULT_VIEWS: Final = 10
@@ -39,64 +32,6 @@ FAR: Final = 0.35
 familiar shape look far, an ordinary query is nearer."""
 GROUND_PREFERENCE: Final = 0.25
 """How much lower the best score may be without the ground than with it, for the ground to be left out all the same."""
-
-
-@dataclass(frozen=True, eq=False)
-class Classification:
-    """The answer to: what is this mesh?
-
-    Args:
-        class_name: the most probable class, also where the mesh may be of none.
-        known: probability that the mesh is of one of the classes at all; ``None`` if the classifier has not learned
-            what is unknown. With fits it is a little higher: what it is set by was not fitted.
-        probabilities: of the classes by all evidence, given that it is one of them; highest first.
-        picture_probabilities: by the pictures alone, means over the views; highest first.
-        scores: of the classes, see :mod:`shapewright.classification.evidence`; comparable between meshes.
-        picture_scores: the same by the pictures alone.
-        distances: panorama distance of the nearest exemplar or fit of each class; ``None`` without exemplars.
-        fits: of the classes that were fitted, instead of the nearest exemplar; ``None`` if nobody asked for that.
-        neighbor: the nearest exemplar of the most probable class; ``None`` without exemplars.
-        descriptor: panorama descriptor of the mesh; ``None`` without exemplars.
-        per_view: probabilities of each picture; columns in the order of the classifier's ``class_names``.
-        images: the pictures that were looked at.
-    """
-
-    class_name: str
-    known: float | None
-    probabilities: dict[str, float]
-    picture_probabilities: dict[str, float]
-    scores: dict[str, float]
-    picture_scores: dict[str, float]
-    distances: dict[str, float] | None
-    fits: dict[str, Fit] | None
-    neighbor: Neighbor | None
-    descriptor: PanoramaDescriptor | None
-    per_view: Float[np.ndarray, "N C"]
-    images: UInt8[np.ndarray, "N H W 3"]
-
-    @property
-    def is_known(self) -> bool:
-        """Whether the mesh is taken for one of the classes at all."""
-        return self.known is None or self.known >= KNOWN_THRESHOLD
-
-    @property
-    def answer(self) -> str:
-        """The class, or :data:`UNKNOWN`."""
-        return self.class_name if self.is_known else UNKNOWN
-
-    def to_dict(self) -> dict[str, Any]:
-        """The answer as JSON values, without scores, descriptor and pictures."""
-        return {
-            "class_name": self.class_name,
-            "answer": self.answer,
-            "known": self.known,
-            "probabilities": _listed(self.probabilities, "probability"),
-            "picture_probabilities": _listed(self.picture_probabilities, "probability"),
-            "distances": None if self.distances is None else _listed(self.distances, "distance"),
-            "fits": None if self.fits is None else [{"class_name": n} | fit.to_dict() for n, fit in self.fits.items()],
-            "neighbor": None if self.neighbor is None else self.neighbor.to_dict(),
-            "per_view": np.asarray(self.per_view, dtype=np.float64).tolist(),
-        }
 
 
 class Classifier:
@@ -117,7 +52,7 @@ class Classifier:
             self._session = make_session(content, threads=threads)
         except Exception as error:  # ONNX Runtime's exceptions share no base but Exception
             raise ClassifierError(f"not an ONNX file that can be loaded: {_first_line(error)}", where=where) from error
-        self.metadata = _checked_metadata(self._session, where)
+        self.metadata = checked_metadata(self._session, where)
         self.class_names: tuple[str, ...] = tuple(self.metadata["class_names"])
         self.look = Look.from_dict(self.metadata["rendering"])
         self.exemplars = exemplars
@@ -150,7 +85,7 @@ class Classifier:
             RenderingError: no headless OpenGL, where pictures need it.
         """
         rotations, scales = self._views(views, rng or np.random.default_rng(0))
-        return self._sights(query)[0].images(rotations, scales)
+        return sights_of(query, self.look)[0].images(rotations, scales)
 
     def classify(
         self,
@@ -181,7 +116,7 @@ class Classifier:
             raise ClassifierError("a fit begins at exemplars, and there are none", where="models")
         rng = rng or np.random.default_rng(0)
         rotations, scales = self._views(views, rng)
-        with_ground, *without = (self._seen(sight, rotations, scales) for sight in self._sights(query))
+        with_ground, *without = (self._seen(sight, rotations, scales) for sight in sights_of(query, self.look))
         seen = with_ground
         for other in without:
             if other.scores.max() > with_ground.scores.max() - GROUND_PREFERENCE:
@@ -237,13 +172,7 @@ class Classifier:
             raise ClassifierError("at least one view is needed", where="views")
         return spread_views(rng, views, scale_range=self.look.scale_range)
 
-    def _sights(self, query: TriangleMesh | PointCloud) -> "list[_Sight]":
-        """Return the ways to see a query: as it is, and where it may stand on the ground also without that."""
-        if self.look.style != "splats":
-            return [_DrawnMesh(query, self.look)]
-        return [_DrawnPoints(reading, self.look) for reading in readings(query)]
-
-    def _seen(self, sight: "_Sight", rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]) -> "_Seen":
+    def _seen(self, sight: Sight, rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]) -> "_Seen":
         images = sight.images(rotations, scales)
         per_view, open_per_view = self._run(images)
         opened = open_per_view.mean(axis=0, dtype=np.float64)
@@ -291,60 +220,6 @@ class Classifier:
         return None if values is None else KnownCurve.from_dict(values)
 
 
-class _Sight(Protocol):
-    """One way to see a query."""
-
-    def images(
-        self, rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]
-    ) -> UInt8[np.ndarray, "N H W 3"]:
-        """Draw it."""
-
-    def surface(self) -> TriangleMesh:
-        """Return what is compared with exemplars."""
-
-    def smooth_surface(self) -> TriangleMesh | None:
-        """Return a smooth stand-in for the surface, if there is one."""
-
-
-@dataclass(frozen=True, eq=False)
-class _DrawnMesh:
-    """A query whose triangles are drawn."""
-
-    query: TriangleMesh | PointCloud
-    look: Look
-
-    def images(
-        self, rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]
-    ) -> UInt8[np.ndarray, "N H W 3"]:
-        return draw([self.query], rotations, scales, self.look, shown=np.zeros(len(scales), dtype=np.int64))
-
-    def surface(self) -> TriangleMesh:
-        return plain_reading(self.query).described_surface()
-
-    def smooth_surface(self) -> TriangleMesh | None:
-        return None
-
-
-@dataclass(frozen=True, eq=False)
-class _DrawnPoints:
-    """A query whose points are drawn."""
-
-    reading: Reading
-    look: Look
-
-    def images(
-        self, rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]
-    ) -> UInt8[np.ndarray, "N H W 3"]:
-        shown = np.zeros(len(scales), dtype=np.int64)
-        return splat_images([self.reading.cloud], rotations, scales, objects=shown, size=self.look.image_size)
-
-    def surface(self) -> TriangleMesh:
-        return self.reading.described_surface()
-
-    def smooth_surface(self) -> TriangleMesh | None:
-        return None if self.reading.surface is None else self.reading.smooth_surface()
-
-
 @dataclass(frozen=True, eq=False)
 class _Seen:
     """What a sight says about the classes, in the order of their numbers."""
@@ -357,15 +232,6 @@ class _Seen:
     exemplar_distances: Float[np.ndarray, " M"] | None
     distances: Float[np.ndarray, " C"] | None
     scores: Float[np.ndarray, " C"]
-
-
-def _listed(values: Mapping[str, float], what: str) -> list[dict[str, Any]]:
-    return [{"class_name": name, what: float(value)} for name, value in values.items()]
-
-
-def exemplars_file(onnx: Path) -> Path:
-    """Where the exemplars of a classifier's file lie: beside it."""
-    return onnx.with_suffix(".exemplars.npz")
 
 
 def files_digest(onnx: bytes, exemplars: Path | None) -> str:
@@ -399,54 +265,6 @@ def _read(onnx: bytes | str | Path) -> tuple[bytes, str | None]:
         return path.read_bytes(), path.name
     except OSError as error:
         raise ClassifierError(f"cannot be read: {error.strerror}", where=path.name) from error
-
-
-def _checked_metadata(session: Any, where: str | None) -> dict[str, Any]:
-    """What the file says about itself, if graph and metadata are ours and agree."""
-    text = session.get_modelmeta().custom_metadata_map.get(METADATA_KEY)
-    if text is None:
-        raise ClassifierError("an ONNX file, but not a Shapewright classifier: it has no metadata of ours", where=where)
-    try:
-        metadata = json.loads(text)
-        if metadata["format"] != FORMAT:
-            raise ClassifierError(f"the format is {metadata['format']!r}, not {FORMAT!r}", where=where)
-        if metadata["version"] != FORMAT_VERSION:
-            raise ClassifierError(
-                f"version {metadata['version']!r} of the format is not known, this library reads {FORMAT_VERSION}",
-                where=where,
-            )
-        class_names = metadata["class_names"]
-        size = _checked_look(metadata["rendering"], where).image_size
-        for curve in (metadata["known"]["pictures"], metadata["known"]["geometry"]):
-            if curve is not None:
-                KnownCurve.from_dict(curve)
-        usual = metadata["usual_distances"]
-        sound = (
-            (usual is None or ([float(one) for one in usual] == usual and len(usual) == len(class_names)))
-            and isinstance(class_names, list)
-            and all(isinstance(name, str) for name in class_names)
-            and all(isinstance(model["digest"], str) for model in metadata["models"])
-            and isinstance(metadata["metrics"], dict)
-        )
-    except (ValueError, KeyError, TypeError) as error:
-        raise ClassifierError(f"the metadata is damaged: {error!r}", where=where) from error
-    shapes = {port.name: (port.type, list(port.shape)[1:]) for port in session.get_inputs() + session.get_outputs()}
-    expected = {
-        IMAGES: ("tensor(uint8)", [size, size, 3]),
-        PROBABILITIES: ("tensor(float)", [len(class_names)]),
-        OPEN_PROBABILITIES: ("tensor(float)", [len(class_names)]),
-    }
-    if not sound or any(shapes.get(name) != shape for name, shape in expected.items()):
-        raise ClassifierError("the metadata does not fit the graph", where=where)
-    return dict(metadata)
-
-
-def _checked_look(rendering: dict[str, Any], where: str | None) -> Look:
-    """Return the look that the metadata names; an error names the file, not a setting that nobody has made."""
-    try:
-        return Look.from_dict(rendering)
-    except ClassifierError as error:
-        raise ClassifierError(f"the metadata is damaged: {error}", where=where) from error
 
 
 def _first_line(error: Exception) -> str:

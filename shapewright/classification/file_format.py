@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, Final
 
 from shapewright.errors import ClassifierError
@@ -16,6 +17,11 @@ _MODEL_PROPERTIES: Final = 14
 _PROPERTY_KEY: Final = 1
 _PROPERTY_VALUE: Final = 2
 _VARINT, _FIXED_64, _BYTES, _FIXED_32 = 0, 1, 2, 5
+
+
+def exemplars_file(onnx: Path) -> Path:
+    """Return where the exemplars of a classifier's file lie: beside it."""
+    return onnx.with_suffix(".exemplars.npz")
 
 
 def read_metadata(onnx: bytes) -> dict[str, Any]:

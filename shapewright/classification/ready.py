@@ -1,48 +1,12 @@
-"""The classifier that ships, and the shortest way to ask it.
-
-Its files lie beside the models that it learned from, in a package above this one, so they are found by name.
-"""
+"""The shortest way to ask a classifier: the one that ships unless another is named."""
 
 from functools import cache
-from importlib import resources
 from pathlib import Path
-from typing import Final
 
-from shapewright.classification.classifier import DEFAULT_VIEWS, Classification, Classifier, load_classifier
-from shapewright.errors import ClassifierError
-from shapewright.mesh import TriangleMesh
-
-_PACKAGE: Final = "models_store.library"
-_FOLDER: Final = "ready"
-
-
-def ready_classifier_file() -> Path:
-    """Return the file of the classifier that ships; its exemplars lie beside it.
-
-    Raises:
-        ClassifierError: it does not ship with this installation.
-    """
-    file = ready_classifier_place()
-    if not file.is_file():
-        raise ClassifierError(
-            "this installation has no ready classifier; name one, or make it in the repository: "
-            "bash scripts/ready_classifier",
-            where=str(file),
-        )
-    return file
-
-
-def ready_classifier_place() -> Path:
-    """Return where the file of the classifier that ships belongs.
-
-    Raises:
-        ClassifierError: the package with the shipped models is not installed.
-    """
-    try:
-        library = resources.files(_PACKAGE)
-    except ModuleNotFoundError as error:
-        raise ClassifierError(f"the package {_PACKAGE} is not installed; name a classifier") from error
-    return Path(str(library / _FOLDER / "classifier.onnx"))
+from shapewright.classification.answer import Classification
+from shapewright.classification.classifier import DEFAULT_VIEWS, Classifier, load_classifier
+from shapewright.classification.ready_files import ready_classifier_file
+from shapewright.mesh import PointCloud, TriangleMesh
 
 
 @cache
@@ -59,30 +23,31 @@ def load_ready_classifier(threads: int = 2) -> Classifier:
 
 
 def classify(
-    mesh: TriangleMesh | str | Path,
+    query: TriangleMesh | PointCloud | str | Path,
+    /,
     *,
     classifier: Classifier | str | Path | None = None,
     views: int = DEFAULT_VIEWS,
 ) -> Classification:
-    """Tell what a mesh is.
+    """Tell what a mesh or a point cloud is.
 
     Args:
-        mesh: a mesh, or a file that you trust.
+        query: a mesh, a point cloud, or a file of either that you trust.
         classifier: one that is loaded, or the ``.onnx`` file of a training; by default the one that ships.
         views: pictures to look at.
 
     Raises:
         ClassifierError: the classifier is missing or damaged; fewer than one view.
         MeshFileError: the file cannot be read.
-        MeshError: the mesh has no area.
-        RenderingError: no headless OpenGL.
+        MeshError: the query has no area or no extent.
+        RenderingError: no headless OpenGL, where pictures need it.
     """
-    if not isinstance(mesh, TriangleMesh):
-        from shapewright.mesh.file import load_mesh
+    if not isinstance(query, TriangleMesh | PointCloud):
+        from shapewright.mesh.file import load_query
 
-        mesh = load_mesh(mesh)
+        query = load_query(query)
     if classifier is None:
         classifier = load_ready_classifier()
     elif not isinstance(classifier, Classifier):
         classifier = load_classifier(classifier)
-    return classifier.classify(mesh, views=views)
+    return classifier.classify(query, views=views)

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from shapewright.classification.classifier import DEFAULT_VIEWS, Classification, Classifier
+from shapewright.classification.answer import Classification
+from shapewright.classification.classifier import DEFAULT_VIEWS, Classifier
 from shapewright.classification.evidence import OTHER
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor, panorama_distances
 from shapewright.errors import EvaluationError, MeshError

@@ -7,7 +7,8 @@ from typing import Final, Protocol, runtime_checkable
 
 import numpy as np
 
-from shapewright.classification.classifier import DEFAULT_VIEWS, Classification
+from shapewright.classification.answer import Classification
+from shapewright.classification.classifier import DEFAULT_VIEWS
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor
 from shapewright.errors import MeshError
 from shapewright.mesh import PointCloud, TriangleMesh

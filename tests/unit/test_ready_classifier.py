@@ -3,6 +3,7 @@
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from command_line import shapewright as command
 
@@ -13,10 +14,13 @@ from shapewright.classification import (
     exemplars_file,
     load_classifier,
     load_ready_classifier,
-    ready,
     ready_classifier_file,
+    ready_files,
 )
+from shapewright.distances.surface import uniform_points
 from shapewright.errors import ClassifierError
+from shapewright.mesh import PointCloud
+from shapewright.mesh.file import load_mesh
 from shapewright.training import TrainingSettings
 
 TEN = {
@@ -99,10 +103,10 @@ def test_another_classifier_is_named_by_its_file(goblet: Path) -> None:
 
 
 def test_an_installation_without_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ready, "_FOLDER", "nowhere")
+    monkeypatch.setattr(ready_files, "_FOLDER", "nowhere")
     with pytest.raises(ClassifierError, match="bash scripts/ready_classifier"):
         ready_classifier_file()
-    monkeypatch.setattr(ready, "_PACKAGE", "no_such_package.library")
+    monkeypatch.setattr(ready_files, "_PACKAGE", "no_such_package.library")
     with pytest.raises(ClassifierError, match="not installed"):
         ready_classifier_file()
 
@@ -116,3 +120,8 @@ def test_the_command_takes_it_and_says_so(goblet: Path, tmp_path: Path, monkeypa
     ranked = command("retrieve", goblet.parent, "--class", "glass_with_stem", "--json").document
     assert ranked["classifier"] == "ready"
     assert ranked["n"] == 1
+
+
+def test_a_point_cloud_is_a_query_too(goblet: Path) -> None:
+    cloud = PointCloud(uniform_points(load_mesh(goblet), 4000, rng=np.random.default_rng(0)))
+    assert shapewright.classify(cloud).class_name == "glass_with_stem"

@@ -58,4 +58,4 @@ def test_a_service_starts_also_where_its_classifier_is_missing(tmp_path: Path, m
     with running(tmp_path / "data", add_shipped_on_start=True, ready_classifier_dir=tmp_path) as live:
         assert live.client.get("/readyz").json()["ready"]
         assert live.client.get("/v1/models").json()["items"]
-    assert said == [f"what ships was not added: {tmp_path}/classifier.onnx: there is no such file"]
+    assert said == [f"what ships was not added: {tmp_path}/classifier.onnx: the file does not exist"]

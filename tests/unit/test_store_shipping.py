@@ -16,10 +16,11 @@ from models_store.artifacts import ArtifactStore
 from models_store.catalog import ShippedItem, ShippedKind
 from models_store.catalog.shipped import classifier_id_of
 from models_store.errors import ArtifactError
-from models_store.library.shipped import CLASSIFIER, list_classes, list_shipped, thumbnail_png
+from models_store.library.shipped import list_classes, list_shipped, thumbnail_png
 from models_store.session import Database
 from models_store.shipping import READY_NAME, add_shipped
 from models_store.tables import ClassifierRow, JobRow, ModelRow
+from shapewright.classification.ready_files import READY_FILE
 from shapewright.errors import ClassifierError
 from shapewright.modeling import ProceduralModel, Recorder
 
@@ -63,7 +64,7 @@ def test_every_model_comes_with_its_picture_and_the_classifier_with_its_files(
     assert (classifier.name, classifier.state.value, classifier.job_id) == (READY_NAME, "succeeded", None)
     assert (classifier.class_names, classifier.model_ids) == (["box", "crate"], ["a" * 64])
     assert (classifier.metrics, classifier.settings) == ({"accuracy": 0.75, "loss": None}, {"variations": 3})
-    assert artifacts.get(str(classifier.onnx_key)) == (ready_dir / CLASSIFIER).read_bytes()
+    assert artifacts.get(str(classifier.onnx_key)) == (ready_dir / READY_FILE).read_bytes()
     assert artifacts.get(str(classifier.exemplars_key)) == b"exemplars"
     clock.forward(60)
     assert add_shipped(database, artifacts, now=clock.now, ready_dir=ready_dir) == []
@@ -164,7 +165,7 @@ def test_a_classifier_that_cannot_be_read_is_refused_after_the_models_are_there(
     ready_dir: Path,
     damage: str,
 ) -> None:
-    path = ready_dir / CLASSIFIER
+    path = ready_dir / READY_FILE
     if damage == "missing":
         path.unlink()
     elif damage == "cut":

@@ -8,7 +8,7 @@ import { Problem } from "./Problem";
 interface MeshListProps {
   selectedId: string | null;
   onChoose: () => void;
-  /** The start page says itself what is being done, and has a place to drop meshes. */
+  /** Whether the start page is open: it has its own drop zone and shows the progress itself. */
   isHome: boolean;
   busy: string | null;
   failure: { error: unknown; fileName: string } | null;

@@ -63,7 +63,7 @@ function KnownClasses() {
   if (!ready) {
     return (
       <p className="muted">
-        There is no classifier yet. Drop a mesh all the same: it is shown, and beside it is what trains a classifier.
+        There is no classifier yet. You can drop a mesh anyway, look at it, and train a classifier from its page.
       </p>
     );
   }

@@ -1,0 +1,85 @@
+"""Sights: the ways to see a query that a classifier chooses from."""
+
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from jaxtyping import Float, UInt8
+
+from shapewright.classification.look import Look
+from shapewright.classification.pictures import draw
+from shapewright.classification.readings import Reading, plain_reading, readings
+from shapewright.mesh import PointCloud, TriangleMesh
+from shapewright.rendering.splats import splat_images
+
+
+@runtime_checkable
+class Sight(Protocol):
+    """One way to see a query."""
+
+    def images(
+        self, rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]
+    ) -> UInt8[np.ndarray, "N H W 3"]:
+        """Draw it."""
+
+    def surface(self) -> TriangleMesh:
+        """Return what is compared with exemplars."""
+
+    def smooth_surface(self) -> TriangleMesh | None:
+        """Return a smooth stand-in for the surface, if there is one."""
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnMesh:
+    """A query whose triangles are drawn."""
+
+    query: TriangleMesh | PointCloud
+    look: Look
+
+    def images(
+        self, rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]
+    ) -> UInt8[np.ndarray, "N H W 3"]:
+        """Draw it."""
+        return draw([self.query], rotations, scales, self.look, shown=np.zeros(len(scales), dtype=np.int64))
+
+    def surface(self) -> TriangleMesh:
+        """Return the mesh itself."""
+        return plain_reading(self.query).described_surface()
+
+    def smooth_surface(self) -> TriangleMesh | None:
+        """Return nothing: triangles are compared as they are drawn."""
+        return None
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnPoints:
+    """A query whose points are drawn."""
+
+    reading: Reading
+    look: Look
+
+    def images(
+        self, rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]
+    ) -> UInt8[np.ndarray, "N H W 3"]:
+        """Draw it."""
+        shown = np.zeros(len(scales), dtype=np.int64)
+        return splat_images([self.reading.cloud], rotations, scales, objects=shown, size=self.look.image_size)
+
+    def surface(self) -> TriangleMesh:
+        """Return the mesh that was read, or surfels of a point cloud."""
+        return self.reading.described_surface()
+
+    def smooth_surface(self) -> TriangleMesh | None:
+        """Return surfels, unless these are the surface already."""
+        return None if self.reading.surface is None else self.reading.smooth_surface()
+
+
+def sights_of(query: TriangleMesh | PointCloud, look: Look) -> list[Sight]:
+    """Return the ways to see a query: as it is, and where it may stand on the ground also without that.
+
+    Raises:
+        MeshError: the query has no area or no extent, and its points are drawn.
+    """
+    if look.style != "splats":
+        return [DrawnMesh(query, look)]
+    return [DrawnPoints(reading, look) for reading in readings(query)]
