@@ -26,7 +26,7 @@ export function StartPage({ onChoose, onSample, busy, failure, onDismiss }: Star
       <button type="button" className="start-drop" onClick={onChoose} disabled={busy !== null}>
         <Icon name="mesh" size={44} />
         <strong>Drop a mesh…</strong>
-        <span>or choose a file: OBJ, OFF, PLY, STL, GLB</span>
+        <span>or choose a file: OBJ, OFF, PLY, STL, GLB; scans: PLY, XYZ, PCD, LAS</span>
       </button>
       <p className="start-sample">
         <span>No mesh at hand?</span>
