@@ -19,8 +19,9 @@ from waiting import PATIENCE_S
 
 from cli.client import Client, connected
 from cli.local_service import local_service
-from models_store.library.shipped import CLASSIFIER, list_classes, list_shipped, load_shipped
+from models_store.library.shipped import list_classes, list_shipped, load_shipped
 from shapewright.classification import exemplars_file
+from shapewright.classification.ready_files import READY_FILE
 from shapewright.mesh import TriangleMesh
 from shapewright.modeling import ProceduralModel, Recorder, compile_model
 from shapewright.training import TrainingSettings, train_classifier
@@ -84,7 +85,7 @@ def fresh_url(built_dashboard: None, tmp_path_factory: pytest.TempPathFactory) -
     classes = {name: [compile_model(load_shipped(name))] for name in ("glass_with_stem", "sword")}
     settings = TrainingSettings(variations=12, images_per_variation=2, image_size=96, negatives=12, epochs=20)
     trained = train_classifier(classes, settings)
-    onnx = folder / CLASSIFIER
+    onnx = folder / READY_FILE
     onnx.write_bytes(trained.onnx)
     assert trained.exemplars is not None
     trained.exemplars.save(exemplars_file(onnx))
