@@ -19,6 +19,8 @@ MIDDLE, FALL = 0.50, 0.37
 """Gray of depth 0, and how much darker the surface gets per unit of depth towards the viewer."""
 STEEPEST, FLATTEST = 0.10, 0.75
 """Gray of a surface seen edge on, and what is added where it faces the viewer."""
+NEAR, FAR = 0.6, 0.2
+"""Darkness that an edge gives to the pixels on its two sides, and to the ones next to these."""
 STEP: Final = 0.07
 """Height of a step between neighboring pixels that is drawn as a full line."""
 CORE: Final = 0.75
@@ -130,17 +132,17 @@ def _shade(depth, image):
         return
     top, bottom = max(0, top - 2), min(size - 1, bottom + 2)
     left, right = max(0, left - 2), min(size - 1, right + 2)
-    rightward = np.zeros((size + 2, size + 2), dtype=np.float32)  # shifted by 1: a pixel has an edge on either side
-    downward = np.zeros((size + 2, size + 2), dtype=np.float32)
+    rightward = np.zeros((size + 3, size + 3), dtype=np.float32)  # shifted by 2: a pixel has two edges on either side
+    downward = np.zeros((size + 3, size + 3), dtype=np.float32)
+    for row in range(top - 1, bottom + 1):
+        for column in range(left - 1, right + 1):
+            rightward[row + 2, column + 2] = _edge(depth, row, column, 0, 1)
+            downward[row + 2, column + 2] = _edge(depth, row, column, 1, 0)
     for row in range(top, bottom + 1):
         for column in range(left, right + 1):
-            rightward[row + 1, column + 1] = _edge(depth, row, column, 0, 1)
-            downward[row + 1, column + 1] = _edge(depth, row, column, 1, 0)
-    for row in range(top, bottom + 1):
-        for column in range(left, right + 1):
-            r, c = row + 1, column + 1
-            across = 0.4 * rightward[r, c - 1] + 0.6 * rightward[r, c] + 0.4 * rightward[r, c + 1]
-            down = 0.4 * downward[r - 1, c] + 0.6 * downward[r, c] + 0.4 * downward[r + 1, c]
+            r, c = row + 2, column + 2
+            across = NEAR * (rightward[r, c - 1] + rightward[r, c]) + FAR * (rightward[r, c - 2] + rightward[r, c + 1])
+            down = NEAR * (downward[r - 1, c] + downward[r, c]) + FAR * (downward[r - 2, c] + downward[r + 1, c])
             darkness = min(1.0, max(across, down))
             z = depth[row, column]
             base = 1.0

@@ -38,7 +38,7 @@ from shapewright.training.sources import MESHES_VERSION, Source
 
 BLOCK: Final = 8
 """Meshes that are drawn and described together; bounds the memory."""
-PICTURES_VERSION: Final = 2
+PICTURES_VERSION: Final = 3
 """Raise it when the renderer draws something else for the same settings."""
 _DESCRIBING_THREADS: Final = 2
 _NICENESS: Final = 10

@@ -75,6 +75,18 @@ def test_nearer_is_darker_and_steeper_is_darker() -> None:
     assert slope[0] - slope[-1] > 60
 
 
+@pytest.mark.parametrize("scale", [0.7, 1.0])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_mirrored_object_has_the_mirrored_picture(shape: str, scale: float) -> None:
+    cloud = plain_reading(SHAPES[shape]).cloud
+    tilted = (cloud.points @ ROTATIONS[0].T).astype(np.float32)
+    picture = front(SplatCloud(tilted, cloud.radius), scale)
+    for flipped, axis in ((np.array([-1, 1, 1]), 1), (np.array([1, -1, 1]), 0)):
+        mirrored = front(SplatCloud((tilted * flipped).astype(np.float32), cloud.radius), scale)
+        differing = difference(np.flip(picture, axis), mirrored).max(axis=-1) > 8
+        assert differing.mean() < 0.002  # a point on the line between two pixels belongs to either
+
+
 def test_a_background_pixel_is_white_and_the_silhouette_dark() -> None:
     picture = front(splat_cloud(sphere(DENSE), 0.0), 0.6, 224)
     assert (picture[:8] == 255).all()
