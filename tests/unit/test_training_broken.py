@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from functools import cache
+from itertools import islice
 
 import numpy as np
 import pytest
@@ -17,8 +18,8 @@ from shapewright.distances.triangles import TriangleDistance
 from shapewright.errors import MeshError
 from shapewright.mesh import PointCloud, TriangleMesh
 from shapewright.modeling import compile_model
-from shapewright.training.broken import BREAK_NAMES, MOST_BROKEN, blocks, holes, noise, one_sided, rounded, sparse
-from shapewright.training.broken.breaking import BREAKS, HARDEST, broken, is_broken
+from shapewright.training.broken import BREAK_NAMES, MOST_BROKEN, blocks, holes, noise, rounded, sparse
+from shapewright.training.broken.breaking import BREAKS, HARDEST, SECOND_BREAKS, TWICE, broken, is_broken
 from shapewright.training.broken.dense_points import dense_points
 
 MODELS = ("table_wire", "fish", "glass_with_stem", "spider")
@@ -123,30 +124,32 @@ def test_holes_are_patches_of_the_surface_and_leave_enough(mesh: TriangleMesh) -
         assert np.median(lonely) < 1.5 * np.median(alone), "whole patches are gone, not single points"
 
 
-def test_one_side_is_a_turned_part_of_the_surface(mesh: TriangleMesh) -> None:
-    for seed, kept in outcomes("one_sided", mesh):
+def test_one_side_is_what_no_face_hides(mesh: TriangleMesh) -> None:
+    for seed, kept in islice(outcomes("one_sided", mesh), 3):
+        turned = TriangleMesh(mesh.vertices @ first_turn(seed).T, mesh.faces)
         points = dense_points(mesh) @ first_turn(seed).T
-        assert cKDTree(points).query(kept)[0].max() < 1e-9 * diagonal(points)
-        assert 0.05 * len(points) < len(kept) < 0.95 * len(points)
-        assert hidden(points, kept) < 0.75 * hidden(points, points), "most of what is hidden is gone"
+        distances, places = cKDTree(points).query(kept)
+        assert distances.max() < 1e-9 * diagonal(points), "what is left has only been turned"
+        gone = np.setdiff1d(np.arange(len(points)), places)
+        rng = np.random.default_rng(0)
+        assert hidden(rng.permutation(kept)[:60], turned, 0.02).mean() <= 0.08
+        assert hidden(rng.permutation(points[gone])[:60], turned, 0.001).mean() > 0.75
 
 
-def test_one_side_is_nearly_all_in_sight_where_pixels_are_wider_than_the_gaps_between_points(
-    mesh: TriangleMesh, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(one_sided, "PIXELS", (48, 48))
-    for seed, kept in outcomes("one_sided", mesh):
-        points = dense_points(mesh) @ first_turn(seed).T
-        assert hidden(points, points) > 0.12
-        assert hidden(points, kept) < 0.35 * hidden(points, points), "the rest is seen at a grazing angle"
+def hidden(points: np.ndarray, mesh: TriangleMesh, share: float) -> np.ndarray:
+    """Whether a face lies before each point, seen from +z, and is at least a share of the object's size away."""
+    corners = mesh.triangles
+    far = share * float(np.ptp(mesh.vertices, axis=0).max())
+    a, b, c = (corners[None, :, k] - points[:, None] for k in range(3))
 
+    def crossed(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+        return p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0]
 
-def hidden(surface: np.ndarray, points: np.ndarray) -> float:
-    """Share of the points that lie behind others of the surface, seen from +z."""
-    wide = float(np.ptp(surface[:, :2], axis=0).max())
-    around = cKDTree(surface[:, :2]).query_ball_point(points[:, :2], 0.012 * wide)
-    front = np.array([surface[near, 2].max() for near in around])
-    return float((front - points[:, 2] > 0.06 * wide).mean())
+    parts = np.stack([crossed(b, c), crossed(c, a), crossed(a, b)])
+    over = ((parts >= 0).all(axis=0) | (parts <= 0).all(axis=0)) & (np.abs(parts.sum(axis=0)) > 1e-12)
+    heights = np.einsum("knf,knf->nf", parts, np.stack([a[..., 2], b[..., 2], c[..., 2]]))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return (over & (heights / parts.sum(axis=0) > far)).any(axis=1)
 
 
 def test_rounded_vertices_lie_on_a_grid_near_to_where_they_were(mesh: TriangleMesh) -> None:
@@ -212,6 +215,7 @@ def test_breaks_are_drawn_from_those_that_are_asked_for(monkeypatch: pytest.Monk
     drawn: list[str] = []
     noted = {name: lambda mesh, rng, name=name: drawn.append(name) or mesh for name in BREAK_NAMES}
     monkeypatch.setattr("shapewright.training.broken.breaking.BREAKS", noted)
+    monkeypatch.setattr("shapewright.training.broken.breaking.SECOND_BREAKS", {})
     mesh, rng = simple_shapes.box(), np.random.default_rng(0)
     assert broken(mesh, (), rng) is mesh
     for _ in range(50):
@@ -223,6 +227,36 @@ def test_breaks_are_drawn_from_those_that_are_asked_for(monkeypatch: pytest.Monk
     counts = {name: drawn.count(name) for name in BREAK_NAMES}
     for name, count in counts.items():
         assert abs(count - (2000 if name == HARDEST else 1000)) < 150, "the hardest twice as often as each other"
+
+
+def test_a_third_is_broken_in_a_second_way_but_in_no_way_that_is_not_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[str] = []
+    noted = {name: lambda mesh, rng, name=name: drawn.append(name) or mesh for name in BREAK_NAMES}
+    monkeypatch.setattr("shapewright.training.broken.breaking.BREAKS", noted)
+    monkeypatch.setattr(
+        "shapewright.training.broken.breaking.SECOND_BREAKS", {name: noted[name] for name in SECOND_BREAKS}
+    )
+    mesh, rng = simple_shapes.box(), np.random.default_rng(0)
+    lengths = []
+    for _ in range(3000):
+        drawn.clear()
+        broken(mesh, BREAK_NAMES, rng)
+        lengths.append(len(drawn))
+        assert len(drawn) == 1 or (drawn[1] in SECOND_BREAKS and drawn[1] != drawn[0])
+    assert abs(np.mean(np.array(lengths) == 2) - TWICE) < 0.04
+    drawn.clear()
+    for _ in range(100):
+        broken(mesh, ("noise", "blocks"), rng)
+    assert set(drawn) == {"noise", "blocks"}
+
+
+@pytest.mark.parametrize("name", SECOND_BREAKS)
+def test_what_is_broken_can_be_broken_again(name: str, mesh: TriangleMesh) -> None:
+    scan = BREAKS["one_sided"](mesh, np.random.default_rng(1))
+    assert isinstance(scan, PointCloud)
+    twice = SECOND_BREAKS[name](scan, np.random.default_rng(2))
+    assert 0.4 * len(scan.points) <= len(twice.points) <= len(scan.points)
+    assert not np.array_equal(twice.points, scan.points)
 
 
 @given(share=st.floats(0.0, MOST_BROKEN))

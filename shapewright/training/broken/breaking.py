@@ -14,15 +14,19 @@ from shapewright.training.broken.one_sided import keep_visible
 from shapewright.training.broken.rounded import round_vertices
 from shapewright.training.broken.sparse import keep_few_points
 
-VERSION: Final = 1
+VERSION: Final = 2
 """Raise it when the same generator breaks a variation differently."""
 
 HARDEST: Final = "one_sided"
 """What takes most from an object is drawn twice as often as the others."""
+TWICE: Final = 1.0 / 3.0
+"""Share of the broken variations that are broken in a second way, too: a scan has more than one fault."""
 _GOLDEN: Final = (5.0**0.5 - 1.0) / 2.0
 
 Break = Callable[[TriangleMesh, np.random.Generator], TriangleMesh | PointCloud]
 """Takes a variation and the source of all choices, strength included; returns what is left of it."""
+BreakMore = Callable[[TriangleMesh | PointCloud, np.random.Generator], PointCloud]
+"""The same for what is broken already."""
 
 BREAKS: Final[Mapping[str, Break]] = MappingProxyType(
     {
@@ -35,6 +39,8 @@ BREAKS: Final[Mapping[str, Break]] = MappingProxyType(
     }
 )
 """Every way to break a variation by its name."""
+SECOND_BREAKS: Final[Mapping[str, BreakMore]] = MappingProxyType({"noise": shake_surface, "holes": lose_patches})
+"""Those among them that can come after another one."""
 
 
 def is_broken(number: int, share: float) -> bool:
@@ -47,7 +53,7 @@ def is_broken(number: int, share: float) -> bool:
 
 
 def broken(mesh: TriangleMesh, breaks: Sequence[str], rng: np.random.Generator) -> TriangleMesh | PointCloud:
-    """Return a variation broken in one random way.
+    """Return a variation broken in one random way, or in two.
 
     Args:
         mesh: the variation.
@@ -60,4 +66,9 @@ def broken(mesh: TriangleMesh, breaks: Sequence[str], rng: np.random.Generator) 
     if not breaks:
         return mesh
     choices = [*breaks, *(name for name in breaks if name == HARDEST)]
-    return BREAKS[choices[int(rng.integers(len(choices)))]](mesh, rng)
+    first = choices[int(rng.integers(len(choices)))]
+    once = BREAKS[first](mesh, rng)
+    second = [name for name in SECOND_BREAKS if name in breaks and name != first]
+    if not second or rng.random() >= TWICE:
+        return once
+    return SECOND_BREAKS[second[int(rng.integers(len(second)))]](once, rng)

@@ -4,11 +4,11 @@ import numpy as np
 from jaxtyping import Float
 
 from shapewright.classification.readings import plain_reading
-from shapewright.mesh import TriangleMesh
+from shapewright.mesh import PointCloud, TriangleMesh
 
 
-def dense_points(mesh: TriangleMesh) -> Float[np.ndarray, "N 3"]:
-    """Return points spread evenly over a surface; the same ones each time.
+def dense_points(mesh: TriangleMesh | PointCloud) -> Float[np.ndarray, "N 3"]:
+    """Return points spread evenly over a surface, or those of a point cloud; the same ones each time.
 
     Raises:
         MeshError: the surface has no area.

@@ -14,7 +14,7 @@ _RADII: Final = (0.02, 0.12)
 """Of a patch, in diagonals."""
 
 
-def lose_patches(mesh: TriangleMesh, rng: np.random.Generator) -> PointCloud:
+def lose_patches(mesh: TriangleMesh | PointCloud, rng: np.random.Generator) -> PointCloud:
     """Take balls of one size away, about random points of the surface, until a random share of it is missing."""
     points = dense_points(mesh)
     diagonal = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))

@@ -15,7 +15,7 @@ _WIDTHS: Final = (0.005, 0.04)
 """Distance, in diagonals, over which errors are alike."""
 
 
-def shake_surface(mesh: TriangleMesh, rng: np.random.Generator) -> PointCloud:
+def shake_surface(mesh: TriangleMesh | PointCloud, rng: np.random.Generator) -> PointCloud:
     """Move points of the surface by a random field: Gaussian, and alike over a random distance."""
     points = dense_points(mesh)
     low, high = points.min(axis=0), points.max(axis=0)

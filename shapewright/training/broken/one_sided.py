@@ -3,14 +3,16 @@
 from typing import Final
 
 import numpy as np
+from jaxtyping import Bool, Float
 from scipy.spatial.transform import Rotation
 
+from shapewright.distances.depth_kernels import WINDOW, draw_passes
 from shapewright.mesh import PointCloud, TriangleMesh
 from shapewright.training.broken.dense_points import dense_points
 
-PIXELS: Final = (48, 160)
-"""Along each side of the depth picture that tells what is hidden; smallest and largest."""
-_STEEP: Final = 2.5
+PIXELS: Final = 256
+"""Along each side of the depth picture that tells what is hidden."""
+_STEEP: Final = 3.0
 """Depth, in pixels, that the surface may have within a pixel."""
 _LEAST_POINTS: Final = 50
 
@@ -20,14 +22,23 @@ def keep_visible(mesh: TriangleMesh, rng: np.random.Generator) -> PointCloud:
 
     An object of which hardly anything would be left stays whole.
     """
-    points = dense_points(mesh) @ Rotation.random(rng=rng).as_matrix().T
-    low, high = points.min(axis=0), points.max(axis=0)
-    side = float((high - low)[:2].max()) / int(rng.integers(PIXELS[0], PIXELS[1] + 1))
-    if not side > 0:
-        return PointCloud(points)
-    cells = np.floor((points[:, :2] - low[:2]) / side).astype(np.int64)
-    cell = cells[:, 0] * (int(cells[:, 1].max()) + 1) + cells[:, 1]
-    front = np.full(int(cell.max()) + 1, -np.inf)
-    np.maximum.at(front, cell, points[:, 2])
-    seen = points[:, 2] > front[cell] - _STEEP * side
+    turn = Rotation.random(rng=rng).as_matrix()
+    points = dense_points(mesh) @ turn.T
+    seen = _is_seen(points, mesh.vertices @ turn.T, mesh)
     return PointCloud(points[seen] if seen.sum() >= _LEAST_POINTS else points)
+
+
+def _is_seen(
+    points: Float[np.ndarray, "N 3"], vertices: Float[np.ndarray, "V 3"], mesh: TriangleMesh
+) -> Bool[np.ndarray, " N"]:
+    """Return which points of a mesh, placed as its vertices are, no face hides from who looks along -z."""
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    zoom = 2.0 * 0.99 * WINDOW / float((high - low).max())
+    frame = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]])
+    middle = 0.5 * (low + high)
+    views = np.empty((2, PIXELS, PIXELS), dtype=np.float32)
+    draw_passes(np.ascontiguousarray(zoom * (vertices - middle)), mesh.faces, frame[None], 0, 1, views)
+    placed = zoom * (points - middle)
+    pixel = 2.0 * WINDOW / PIXELS
+    column, row = np.clip(np.floor((placed[:, :2] + WINDOW) / pixel).astype(np.int64), 0, PIXELS - 1).T
+    return np.asarray(-placed[:, 2] < views[0][row, column] + _STEEP * pixel)
