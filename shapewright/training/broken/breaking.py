@@ -14,11 +14,11 @@ from shapewright.training.broken.one_sided import keep_visible
 from shapewright.training.broken.rounded import round_vertices
 from shapewright.training.broken.sparse import keep_few_points
 
-VERSION: Final = 2
+VERSION: Final = 3
 """Raise it when the same generator breaks a variation differently."""
 
-HARDEST: Final = "one_sided"
-"""What takes most from an object is drawn twice as often as the others."""
+OFTEN: Final[Mapping[str, int]] = MappingProxyType({"one_sided": 3, "rounded": 2})
+"""How many times as often as the others the breaks are drawn that change an object most."""
 TWICE: Final = 1.0 / 3.0
 """Share of the broken variations that are broken in a second way, too: a scan has more than one fault."""
 _GOLDEN: Final = (5.0**0.5 - 1.0) / 2.0
@@ -65,7 +65,7 @@ def broken(mesh: TriangleMesh, breaks: Sequence[str], rng: np.random.Generator) 
     """
     if not breaks:
         return mesh
-    choices = [*breaks, *(name for name in breaks if name == HARDEST)]
+    choices = [name for name in breaks for _ in range(OFTEN.get(name, 1))]
     first = choices[int(rng.integers(len(choices)))]
     once = BREAKS[first](mesh, rng)
     second = [name for name in SECOND_BREAKS if name in breaks and name != first]
