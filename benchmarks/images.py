@@ -20,7 +20,7 @@ from shapewright.network import FeatureExtractor, load_backbone
 from shapewright.rendering import random_views, render_images, renderer_name
 from shapewright.training.calibration import Calibration
 from shapewright.training.export import classifier_metadata, export_classifier
-from shapewright.training.head import Head
+from shapewright.training.head import Head, Layer
 from shapewright.training.settings import TrainingSettings
 
 SIDES, RINGS = 48, 33
@@ -83,7 +83,7 @@ def main() -> None:
     backbone = load_backbone()
     extractor = FeatureExtractor(backbone)
     features_s = median_seconds(lambda: extractor(images), options.repeats)
-    head = Head(rng.normal(size=(10, 1280)).astype(np.float32), np.zeros(10, np.float32), 10, 1.0, {}, 0)
+    head = Head((Layer(rng.normal(size=(10, 1280)).astype(np.float32), np.zeros(10, np.float32)),), 10, 1.0, {}, 0)
     names = tuple(f"class_{number}" for number in range(10))
     metadata = classifier_metadata(names, (), backbone, TrainingSettings(), {}, Calibration(1.0, None, None, None, {}))
     classifier = Classifier(export_classifier(backbone, head, metadata))

@@ -40,6 +40,7 @@ class TrainingSettingsIn(InBody):
     held_out: Annotated[float, Field(gt=0, lt=1)] | None = Field(
         default=None, description="Share of the variations that measure the accuracy."
     )
+    hidden: Annotated[int, Field(ge=0, le=4096)] | None = None
     epochs: Annotated[int, Field(ge=1, le=10_000)] | None = None
     patience: Annotated[int, Field(ge=1, le=10_000)] | None = Field(
         default=None, description="Epochs without a better held-out loss after which training stops."

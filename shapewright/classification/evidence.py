@@ -13,9 +13,9 @@ from typing import Any, Final
 import numpy as np
 from jaxtyping import Bool, Float
 
-GEOMETRY_WEIGHT: Final = 10.0
-"""How much of a log-probability a unit of panorama distance is worth where the class is chosen. From 5 to 15 little
-changes on clean meshes; one-sided scans ask for less."""
+GEOMETRY_WEIGHT: Final = 5.0
+"""How much of a log-probability a unit of panorama distance is worth where the class is chosen. From 0 to 10 little
+changes; point clouds ask for more, one-sided scans for less."""
 KNOWN_WEIGHT: Final = 3.0
 """The same in the score, which tells what is known."""
 FLOOR: Final = 1e-3

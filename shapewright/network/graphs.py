@@ -96,18 +96,18 @@ def _node(step: Step) -> tuple[Any, list[Any]]:
 
 def classifier_graph(
     features: bytes,
-    weight: Float[np.ndarray, "K D"],
-    bias: Float[np.ndarray, " K"],
+    layers: Sequence[tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, " _"]]],
     class_count: int,
     temperature: float,
     *,
     image_size: int,
     metadata: dict[str, str],
 ) -> Any:
-    """A backbone's graph with a last layer: ``probabilities`` = softmax((features · Wᵀ + b) / temperature).
+    """A backbone's graph with a head: ``probabilities`` = softmax(values / temperature).
 
-    Two more outputs stay beside them: ``open_probabilities``, where the value of ``none`` (a row of W beyond the
-    classes, if there is one) has its share, and ``features``, for distances between pictures.
+    Each layer of the head, a weight and a bias, gives inputs · Wᵀ + b; negative values of all but the last are set to
+    zero. Two more outputs stay beside the probabilities: ``open_probabilities``, where the value of ``none`` (a row
+    beyond the classes in the last W, if there is one) has its share, and ``features``, for distances between pictures.
 
     Returns:
         An ``onnx.ModelProto`` whose input is fixed to the size of the learning images.
@@ -117,8 +117,6 @@ def classifier_graph(
     graph.name = "classifier"
     graph.initializer.extend(
         [
-            constant(weight.astype(np.float32), "class_weight"),
-            constant(bias.astype(np.float32), "class_bias"),
             constant(np.float32(temperature), "temperature"),
             constant(np.array([0], dtype=np.int64), "first_class"),
             constant(np.array([class_count], dtype=np.int64), "class_count"),
@@ -126,9 +124,20 @@ def classifier_graph(
         ]
     )
     of_classes = ["first_class", "class_count", "class_axis"]
+    values = FEATURES
+    for number, (weight, bias) in enumerate(layers, start=1):
+        names = [f"head{number}_weight", f"head{number}_bias"]
+        graph.initializer.extend(
+            constant(array.astype(np.float32), name) for array, name in zip((weight, bias), names, strict=True)
+        )
+        is_last = number == len(layers)
+        gives = "logits" if is_last else f"head{number}"
+        graph.node.append(helper.make_node("Gemm", [values, *names], [gives], transB=1))
+        if not is_last:
+            values = f"{gives}_positive"
+            graph.node.append(helper.make_node("Relu", [gives], [values]))
     graph.node.extend(
         [
-            helper.make_node("Gemm", [FEATURES, "class_weight", "class_bias"], ["logits"], transB=1),
             helper.make_node("Div", ["logits", "temperature"], ["calibrated_logits"]),
             helper.make_node("Slice", ["calibrated_logits", *of_classes], ["class_logits"]),
             helper.make_node("Softmax", ["class_logits"], [PROBABILITIES], axis=1),

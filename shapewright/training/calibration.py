@@ -19,7 +19,8 @@ from shapewright.classification.exemplars import Exemplars
 from shapewright.distances.panorama import PanoramaDescriptor
 from shapewright.progress import NULL_PROGRESS, PartialProgress, Progress
 from shapewright.training.dataset import FeatureSet, Plan
-from shapewright.training.head import softmax, train_head
+from shapewright.training.head import softmax
+from shapewright.training.head_training import train_head
 from shapewright.training.settings import TrainingSettings
 
 FOLDS: Final = 3

@@ -68,14 +68,13 @@ def export_classifier(backbone: Backbone, head: Head, metadata: dict[str, Any]) 
 
     Args:
         backbone: what the head was trained on.
-        head: the last layer and its temperature.
+        head: the last layers and their temperature.
         metadata: from :func:`classifier_metadata`; kept as JSON under the key ``shapewright``, the class names
             also under ``class_names`` for other readers.
     """
     model = classifier_graph(
         backbone.graph,
-        head.weight,
-        head.bias,
+        [(layer.weight, layer.bias) for layer in head.layers],
         head.class_count,
         head.temperature,
         image_size=int(metadata["rendering"]["image_size"]),

@@ -17,7 +17,8 @@ from shapewright.training.chunks import is_stored, store_chunk
 from shapewright.training.dataset import FeatureSet, Plan, load_descriptors, load_features, plan_learning
 from shapewright.training.exemplars import exemplars_of
 from shapewright.training.export import ModelReference, classifier_metadata, export_classifier
-from shapewright.training.head import Head, train_head
+from shapewright.training.head import Head
+from shapewright.training.head_training import train_head
 from shapewright.training.settings import TrainingSettings
 
 IMAGES_SHARE = 0.85
@@ -104,7 +105,7 @@ def draw_and_describe(
 def learn(
     plan: Plan, settings: TrainingSettings, store: ArrayStore, progress: Progress = NULL_PROGRESS
 ) -> TrainedClassifier:
-    """Learn the last layer from a store that holds all that the plan needs.
+    """Learn the head from a store that holds all that the plan needs.
 
     Raises:
         ClassifierError: something is missing in the store.

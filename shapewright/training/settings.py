@@ -30,11 +30,12 @@ class TrainingSettings:
         exemplars_per_class: keep so many of them, those that represent the rest best; 0 keeps all.
         vary: whether variations vary; without, all pictures show base models (the paper's baseline, section 4.2).
         held_out: share of each class's *variations* (not pictures) kept for early stopping and calibration.
-        epochs: passes over the features at most.
+        hidden: values of the head's hidden layer; 0 learns a single layer, as the paper does.
+        epochs: passes over the features at most; the learning rate falls to nothing over them.
         patience: passes without a better held-out loss after which training stops.
-        learning_rate: of Adam, for standardised features.
-        weight_decay: pull of the last layer's weights towards zero.
-        batch_size: pictures in one step of the head's training.
+        learning_rate: highest one of AdamW, for standardised features.
+        weight_decay: pull of the head's weights towards zero.
+        batch_size: pictures in one step of the head's training at most.
         seed: of everything random; the same seed, models and settings give the same classifier.
         backbone: an entry of :data:`shapewright.network.backbone.BACKBONES`.
         style: look of the pictures.
@@ -59,10 +60,11 @@ class TrainingSettings:
     exemplars_per_class: int = 0
     vary: bool = True
     held_out: float = 0.1
-    epochs: int = 40
+    hidden: int = 512
+    epochs: int = 8
     patience: int = 4
     learning_rate: float = 1e-3
-    weight_decay: float = 1e-4
+    weight_decay: float = 1e-2
     batch_size: int = 256
     seed: int = 0
     backbone: str = DEFAULT_BACKBONE
@@ -70,7 +72,7 @@ class TrainingSettings:
     framing: Framing = "sphere"
     window: float = 1.0
     subdivision_steps: int = 2
-    broken: float = 0.6
+    broken: float = 0.7
     breaks: tuple[str, ...] = BREAK_NAMES
 
     def __post_init__(self) -> None:
@@ -87,6 +89,7 @@ class TrainingSettings:
             "negatives": (self.negatives >= 0, "not negative"),
             "exemplars_per_class": (self.exemplars_per_class >= 0, "not negative"),
             "held_out": (0 < self.held_out < 1, "between 0 and 1"),
+            "hidden": (self.hidden >= 0, "not negative"),
             "epochs": (self.epochs >= 1, "at least 1"),
             "patience": (self.patience >= 1, "at least 1"),
             "learning_rate": (self.learning_rate > 0, "positive"),
@@ -112,7 +115,7 @@ class TrainingSettings:
 
     @classmethod
     def paper(cls, **changes: Any) -> "TrainingSettings":
-        """The paper's framing and scales, one light, no objects of no class, pictures alone (section 3.2)."""
+        """The paper's framing and scales, one light, one layer, classes and pictures alone (section 3.2)."""
         values: dict[str, Any] = {
             "scale_range": SCALE_RANGE,
             "negatives": 0,
@@ -121,6 +124,7 @@ class TrainingSettings:
             "framing": "paper",
             "window": WINDOW,
             "broken": 0.0,
+            "hidden": 0,
         }
         return cls(**(values | changes))
 

@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import onnx
@@ -22,7 +23,7 @@ from shapewright.network import load_backbone
 from shapewright.training import TrainingSettings, train_classifier
 from shapewright.training.calibration import Calibration
 from shapewright.training.export import export_classifier
-from shapewright.training.head import Head
+from shapewright.training.head import Head, Layer
 from shapewright.training.negatives import random_assembly
 
 SETTINGS = TrainingSettings(
@@ -70,8 +71,8 @@ def test_own_instances_are_known_and_assemblies_are_not(classifier):
     absurd = [random_assembly(np.random.default_rng([5, number])) for number in range(12)]
     own_known, absurd_known = knowns(own), knowns(absurd)
     assert all(0.0 <= known <= 1.0 for known in own_known + absurd_known)
-    assert np.mean(own_known) > 0.6
-    assert np.mean(absurd_known) < 0.4
+    assert np.mean(own_known) > np.mean(absurd_known) + 0.3
+    assert np.median(own_known) > 0.5 > np.median(absurd_known)
     assert classifier.classify(absurd[int(np.argmin(absurd_known))], views=6).answer == UNKNOWN
     best = classifier.classify(own[int(np.argmax(own_known))], views=6)
     assert best.is_known
@@ -198,9 +199,12 @@ def test_the_graph_computes_the_trained_head():
     metadata = classifier_metadata(("a", "b", "c", "d"), (), backbone, settings, {}, calibration)
     images = rng.integers(0, 256, (5, 64, 64, 3), dtype=np.uint8)
     features = FeatureExtractor(backbone)(images)
-    for rows in (4, 5):
-        weight, bias = rng.normal(size=(rows, 1280)).astype(np.float32), rng.normal(size=rows).astype(np.float32)
-        head = Head(weight=weight, bias=bias, class_count=4, temperature=2.5, curves={}, best_epoch=0)
+    for widths in ((1280, 4), (1280, 5), (1280, 7, 5)):
+        layers = tuple(
+            Layer(rng.normal(size=(wide, narrow)).astype(np.float32).T, rng.normal(size=narrow).astype(np.float32))
+            for wide, narrow in pairwise(widths)
+        )
+        head = Head(layers=layers, class_count=4, temperature=2.5, curves={}, best_epoch=0)
         content = export_classifier(backbone, head, metadata)
         assert np.abs(Classifier(content).predict(images) - head.probabilities(features)).max() < 1e-4
         session = onnxruntime.InferenceSession(content, providers=["CPUExecutionProvider"])

@@ -16,7 +16,7 @@ from shapewright.rendering import random_views, render_images
 from shapewright.training import TrainingSettings
 from shapewright.training.calibration import Calibration
 from shapewright.training.export import classifier_metadata, export_classifier
-from shapewright.training.head import Head
+from shapewright.training.head import Head, Layer
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +82,7 @@ def sums_that_could_saturate(model: onnx.ModelProto) -> list[str]:
 def exported(backbone: Backbone) -> onnx.ModelProto:
     """A classifier's file on this backbone."""
     weight = np.random.default_rng(0).normal(size=(3, backbone.feature_count)).astype(np.float32)
-    head = Head(weight=weight, bias=weight[:, 0], class_count=3, temperature=1.0, curves={}, best_epoch=0)
+    head = Head(layers=(Layer(weight, weight[:, 0]),), class_count=3, temperature=1.0, curves={}, best_epoch=0)
     calibration = Calibration(1.0, None, None, None, {})
     metadata = classifier_metadata(("a", "b", "c"), (), backbone, TrainingSettings(), {}, calibration)
     return onnx.load_model_from_string(export_classifier(backbone, head, metadata))

@@ -16,7 +16,7 @@ from shapewright.training import MemoryStore, TrainingSettings, train_classifier
 from shapewright.training.calibration import calibration_error
 from shapewright.training.chunks import BLOCK, chunk_images, features_key
 from shapewright.training.dataset import load_features, plan_learning
-from shapewright.training.head import train_head
+from shapewright.training.head_training import train_head
 from shapewright.training.learning import draw_and_describe, held_out_metrics
 from shapewright.training.sources import ModelSource
 
