@@ -16,11 +16,13 @@ if TYPE_CHECKING:
     from shapewright.classification.file_format import exemplars_file
     from shapewright.classification.ready import classify, load_ready_classifier
     from shapewright.classification.ready_files import ready_classifier_file
+    from shapewright.classification.trade_off import TradeOffPoint
 
 _HOMES = {
     "Classification": "answer",
     "Classifier": "classifier",
     "Exemplars": "exemplars",
+    "TradeOffPoint": "trade_off",
     "UNKNOWN": "evidence",
     "classify": "ready",
     "exemplars_file": "file_format",
@@ -37,6 +39,7 @@ __all__ = [
     "Classification",
     "Classifier",
     "Exemplars",
+    "TradeOffPoint",
     "classify",
     "exemplars_file",
     "files_digest",

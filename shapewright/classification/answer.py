@@ -49,12 +49,19 @@ class Classification:
     @property
     def is_known(self) -> bool:
         """Whether the mesh is taken for one of the classes at all."""
-        return self.known is None or self.known >= KNOWN_THRESHOLD
+        return self.answer != UNKNOWN
 
     @property
     def answer(self) -> str:
-        """The class, or :data:`UNKNOWN`."""
-        return self.class_name if self.is_known else UNKNOWN
+        """The class, or :data:`UNKNOWN`, at the default threshold."""
+        return self.answer_at(KNOWN_THRESHOLD)
+
+    def answer_at(self, threshold: float) -> str:
+        """Return the class, or :data:`UNKNOWN` if ``known`` is below the threshold.
+
+        :attr:`shapewright.classification.Classifier.trade_off` lists what thresholds accept and refuse.
+        """
+        return self.class_name if self.known is None or self.known >= threshold else UNKNOWN
 
     def to_dict(self) -> dict[str, Any]:
         """The answer as JSON values, without scores, descriptor and pictures."""

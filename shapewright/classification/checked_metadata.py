@@ -6,6 +6,7 @@ from typing import Any
 from shapewright.classification.evidence import KnownCurve
 from shapewright.classification.file_format import FORMAT, FORMAT_VERSION, METADATA_KEY
 from shapewright.classification.look import Look
+from shapewright.classification.trade_off import trade_off_of
 from shapewright.errors import ClassifierError
 from shapewright.network.ports import IMAGES, OPEN_PROBABILITIES, PROBABILITIES
 
@@ -37,6 +38,8 @@ def checked_metadata(session: Any, where: str | None) -> dict[str, Any]:
         for curve in (metadata["known"]["pictures"], metadata["known"]["geometry"]):
             if curve is not None:
                 KnownCurve.from_dict(curve)
+        for geometry in (False, True):
+            trade_off_of(dict(metadata["metrics"]), geometry=geometry)
         usual = metadata["usual_distances"]
         sound = (
             (usual is None or ([float(one) for one in usual] == usual and len(usual) == len(class_names)))

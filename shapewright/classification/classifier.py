@@ -18,6 +18,7 @@ from shapewright.classification.look import Look
 from shapewright.classification.neighbor import Neighbor
 from shapewright.classification.sights import Sight, sights_of
 from shapewright.classification.synthesis import FITTED_CLASSES, fit_class
+from shapewright.classification.trade_off import TradeOffPoint, trade_off_of
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor
 from shapewright.errors import ClassifierError
 from shapewright.estimation.generator import InstanceGenerator
@@ -65,6 +66,11 @@ class Classifier:
     def metrics(self) -> dict[str, Any]:
         """Figures of the training that made this classifier."""
         return dict(self.metadata["metrics"])
+
+    @property
+    def trade_off(self) -> tuple[TradeOffPoint, ...] | None:
+        """What thresholds of ``known`` accept and refuse; ``None`` if the training did not measure it."""
+        return trade_off_of(self.metadata["metrics"], geometry=self.exemplars is not None)
 
     def predict(self, images: UInt8[np.ndarray, "N H W 3"]) -> Float[np.ndarray, "N C"]:
         """Calibrated class probabilities of pictures, given that they show one of the classes; float32.

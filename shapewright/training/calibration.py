@@ -16,6 +16,7 @@ from scipy.optimize import minimize_scalar
 
 from shapewright.classification.evidence import KnownCurve, auroc, class_probabilities, class_scores, fit_known_curve
 from shapewright.classification.exemplars import Exemplars
+from shapewright.classification.trade_off import measure_trade_off, trade_off_key
 from shapewright.distances.panorama import PanoramaDescriptor
 from shapewright.progress import NULL_PROGRESS, PartialProgress, Progress
 from shapewright.training.dataset import FeatureSet, Plan
@@ -46,8 +47,8 @@ class Calibration:
         usual_distances: of each class, the panorama distance to its nearest exemplar within which nine of ten of the
             tried variations lie; ``None`` without exemplars.
         metrics: figures as JSON values: accuracy on variations of left-out models by pictures and by all
-            evidence, how far their probabilities by all evidence are from the truth, and the area under the curve of
-            known against unknown; what was not tried is missing.
+            evidence, how far their probabilities by all evidence are from the truth, the area under the curve of
+            known against unknown, and what thresholds of ``known`` accept and refuse; what was not tried is missing.
     """
 
     temperature: float
@@ -118,7 +119,14 @@ def calibrate(
             metrics[f"left_out_calibration_error{name}"] = calibration_error(by_class[forecast].max(axis=1), right)
             if has_none:
                 metrics[f"left_out_auroc{name}"] = auroc(best[forecast], best[~known])
-        return fit_known_curve(best[whole], known[whole]) if has_none else None
+        if not has_none:
+            return None
+        curve = fit_known_curve(best[whole], known[whole])
+        if forecast.any():
+            inside, outside = ([curve.probability(one) for one in best[whole & kind]] for kind in (known, ~known))
+            points = measure_trade_off(inside, outside)
+            metrics[trade_off_key(geometry=not name)] = [point.to_dict() for point in points]
+        return curve
 
     pictures = judged("_pictures", probabilities, class_scores(opened))
     geometry = usual = None

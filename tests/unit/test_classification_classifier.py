@@ -13,7 +13,7 @@ import pytest
 import simple_shapes
 from simple_shapes import toy_classes
 
-from shapewright.classification import UNKNOWN, Classifier, exemplars_file, load_classifier
+from shapewright.classification import UNKNOWN, Classifier, TradeOffPoint, exemplars_file, load_classifier
 from shapewright.classification.classifier import FAR
 from shapewright.classification.file_format import FORMAT_VERSION, read_metadata
 from shapewright.classification.readings import readings
@@ -77,6 +77,9 @@ def test_own_instances_are_known_and_assemblies_are_not(classifier):
     best = classifier.classify(own[int(np.argmax(own_known))], views=6)
     assert best.is_known
     assert best.answer == best.class_name
+    assert best.known is not None
+    assert best.answer_at(best.known) == best.class_name
+    assert best.answer_at(np.nextafter(best.known, 1.0)) == UNKNOWN
 
 
 def test_what_the_file_says_of_itself_can_be_read_without_the_network(trained, pictures_alone):
@@ -88,7 +91,20 @@ def test_without_objects_of_no_class_everything_is_known():
     answer = Classifier(train_classifier(toy_classes(), settings).onnx).classify(simple_shapes.goblet(), views=2)
     assert answer.known is None
     assert answer.is_known
-    assert answer.answer == answer.class_name
+    assert answer.answer == answer.answer_at(1.0) == answer.class_name
+
+
+def test_the_trade_off_is_of_the_evidence_that_counts(trained, with_geometry, pictures_alone):
+    assert with_geometry.trade_off is None, "no model could be left out, or the file is older"
+    text = next(
+        prop.value for prop in onnx.load_model_from_string(trained.onnx).metadata_props if prop.key == "shapewright"
+    )
+    document = json.loads(text)
+    point = TradeOffPoint(0.5, 0.9, 0.8)
+    document["metrics"] |= {"trade_off": [point.to_dict()], "trade_off_pictures": []}
+    content = _with_metadata(trained.onnx, shapewright=json.dumps(document))
+    assert Classifier(content, exemplars=trained.exemplars).trade_off == (point,)
+    assert Classifier(content).trade_off == ()
 
 
 def test_with_exemplars_the_answer_holds_distances(trained, with_geometry, pictures_alone):
@@ -240,6 +256,8 @@ def test_damaged_and_foreign_files_are_refused(trained, tmp_path):
         "no word on what is known": {key: value for key, value in whole.items() if key != "known"},
         "an unknown style": {**whole, "rendering": {**whole["rendering"], "style": "cubist"}},
         "an unknown framing": {**whole, "rendering": {**whole["rendering"], "framing": "gold"}},
+        "a trade-off of another kind": {**whole, "metrics": {**whole["metrics"], "trade_off": [{"threshold": 0.5}]}},
+        "figures that are none": {**whole, "metrics": ["trade_off"]},
         "models without digests": {**whole, "models": [{"name": "bench"}]},
         "a list": [1, 2],
     }.items():

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from simple_shapes import BoxModel, toy_classes
 
+from shapewright.classification.evidence import KNOWN_THRESHOLD, REFUSED
+from shapewright.classification.trade_off import trade_off_of
 from shapewright.network import load_backbone
 from shapewright.training import MemoryStore, TrainingSettings, train_classifier
 from shapewright.training.calibration import MAX_TEMPERATURE, Calibration, calibrate, fit_temperature
@@ -103,6 +105,15 @@ def test_a_training_reports_what_becomes_of_left_out_models() -> None:
         assert 0.0 <= metrics[name] <= 1.0
     assert metrics["left_out_meshes"] == 3 * 12
     assert metrics["left_out_accuracy"] > 0.6
+    for geometry in (True, False):
+        points = trade_off_of(metrics, geometry=geometry)
+        assert points is not None
+        accepted, refused = [p.accepted_known for p in points], [p.refused_other for p in points]
+        assert (accepted[0], refused[0]) == (1.0, 0.0)
+        assert accepted == sorted(accepted, reverse=True)
+        assert refused == sorted(refused)
+        at_default = next(point for point in points if point.threshold == KNOWN_THRESHOLD)
+        assert at_default.refused_other >= REFUSED - 0.13, "one of the eight objects at most is over it"
 
 
 def also(model: BoxModel) -> list[BoxModel]:
