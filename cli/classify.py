@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cli.console import AsJson, print_json, shown_progress, stdout
-from cli.evaluation_options import ClassifierFile, Jobs, threads
+from cli.evaluation_options import ClassifierFile, Jobs, Threshold, threads
 from cli.picture import save_picture
 from cli.sources import by_digest, chosen_classifier, classifier_line, classifier_name, find_meshes, load_class
 from models_store.library.shipped import list_classes
@@ -37,6 +37,7 @@ def classify(
         bool,
         typer.Option("--fit", help="Also fit the shipped models of the likeliest classes; takes a second a mesh."),
     ] = False,
+    threshold: Threshold = 0.5,
     pictures: Annotated[
         Path | None,
         typer.Option(
@@ -60,6 +61,7 @@ def classify(
       [bold]shapewright classify scan.pcd[/]
       [bold]shapewright classify my-meshes more/*.obj --json[/]
       [bold]shapewright classify query.off -c mine.onnx --fit --pictures seen[/]
+      [bold]shapewright classify my-meshes --threshold 0.3[/]
     """
     import numpy as np
 
@@ -96,11 +98,12 @@ def classify(
 
                 pictures.mkdir(parents=True, exist_ok=True)
                 save_picture(compose_grid(found.images), picture)
-                if not found.is_known:
+                if found.answer_at(threshold) != found.class_name:
                     _save_neighbor(network, found, picture.with_name(f"{picture.stem}-nearest.png"))
             results.append(
                 {"file": str(file)}
                 | found.to_dict()
+                | {"answer": found.answer_at(threshold)}
                 | {"seconds": seconds, "picture": None if picture is None else str(picture)}
             )
     if not results:
@@ -110,6 +113,7 @@ def classify(
             {
                 "classifier": classifier_name(classifier),
                 "views": views,
+                "threshold": threshold,
                 "class_names": list(network.class_names),
                 "results": results,
                 "skipped_count": len(skipped),

@@ -20,6 +20,7 @@ from cli.evaluation_options import (
     Limit,
     ReportFile,
     Seed,
+    Threshold,
     chosen_meshes,
     threads,
 )
@@ -110,6 +111,7 @@ def classification(
     fit: Annotated[
         bool, typer.Option("--fit", help="Classify with a short fit of the likeliest classes, too.")
     ] = False,
+    threshold: Threshold = 0.5,
     train: Train = False,
     settings_file: SettingsFile = None,
     seed: Seed = 0,
@@ -132,7 +134,19 @@ def classification(
     from shapewright.evaluation.classification_figures import unknown_figures
 
     options = Options(
-        dataset, classifier, limit, classes, views, settings_file, seed, jobs, cache, baselines, train=train, fit=fit
+        dataset,
+        classifier,
+        limit,
+        classes,
+        views,
+        settings_file,
+        seed,
+        jobs,
+        cache,
+        baselines,
+        train=train,
+        fit=fit,
+        threshold=threshold,
     )
     with _evaluated(options, report) as (done, progress):
         figures = done.classified
@@ -143,6 +157,7 @@ def classification(
         **_common(options, done, report),
         **figures["all"].to_dict(),
         "n_other": sum(one.label == "other" for one in judged),
+        "threshold": threshold,
         "unknown": unknown,
         "evidence": {name: one.to_dict() for name, one in figures.items() if name != "all"},
         "meshes": [
@@ -264,6 +279,7 @@ class Options:
     baselines: bool
     train: bool = False
     fit: bool = False
+    threshold: float = 0.5
 
     @property
     def trains(self) -> bool:
@@ -311,6 +327,7 @@ def _evaluated(options: Options, report: Path | None) -> Iterator[tuple[Evaluate
             fitted=by_digest((learned or {}).values()) if options.fit else None,
             views=options.views,
             seed=options.seed,
+            threshold=options.threshold,
             jobs=used,
             progress=PartialProgress(progress, _TRAINING_SHARE, 0.95),
         )

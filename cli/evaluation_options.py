@@ -42,6 +42,10 @@ ClassifierFile = Annotated[
         show_default=False,
     ),
 ]
+Threshold = Annotated[
+    float,
+    typer.Option(min=0.0, max=1.0, help="Answer `unknown` where `known` is below."),
+]
 CacheFolder = Annotated[
     Path | None,
     typer.Option(

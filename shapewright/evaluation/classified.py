@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from shapewright.classification.answer import Classification
 from shapewright.classification.classifier import DEFAULT_VIEWS, Classifier
-from shapewright.classification.evidence import OTHER
+from shapewright.classification.evidence import KNOWN_THRESHOLD, OTHER
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_descriptor, panorama_distances
 from shapewright.errors import EvaluationError, MeshError
 from shapewright.evaluation.datasets import LabelledFile, Skipped, load_each
@@ -73,9 +73,11 @@ class Found:
     probability: float
 
     @classmethod
-    def of(cls, answer: Classification) -> "Found":
-        """Take them out."""
-        return cls(answer.class_name, answer.answer, answer.known, answer.probabilities[answer.class_name])
+    def of(cls, answer: Classification, threshold: float) -> "Found":
+        """Take them out; ``threshold`` is that of ``known``."""
+        return cls(
+            answer.class_name, answer.answer_at(threshold), answer.known, answer.probabilities[answer.class_name]
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +104,7 @@ def judge_dataset(
     fitted: Mapping[str, CompiledModel] | None = None,
     views: int = DEFAULT_VIEWS,
     seed: int = 0,
+    threshold: float = KNOWN_THRESHOLD,
     jobs: int = 1,
     progress: Progress = NULL_PROGRESS,
 ) -> JudgedDataset:
@@ -115,6 +118,7 @@ def judge_dataset(
         fitted: models by digest; each mesh is classified with fits, too.
         views: pictures of each mesh.
         seed: of the views.
+        threshold: meshes whose ``known`` is below are answered with ``unknown``.
         jobs: meshes that are read at once.
         progress: told of every mesh; may cancel.
 
@@ -137,7 +141,7 @@ def judge_dataset(
             skipped.append(mesh)
             continue
         try:
-            judged.append(_judge(item, mesh, classifier, base_descriptors, others, fitted, views, seed))
+            judged.append(_judge(item, mesh, classifier, base_descriptors, others, fitted, views, seed, threshold))
         except MeshError as error:
             skipped.append(Skipped(item.file, error.message))
     if not judged:
@@ -154,6 +158,7 @@ def _judge(
     fitted: Mapping[str, CompiledModel] | None,
     views: int,
     seed: int,
+    threshold: float,
 ) -> Judged:
     names = classifier.class_names
     started_s = time.perf_counter()
@@ -180,7 +185,7 @@ def _judge(
     return Judged(
         item=item,
         label=item.class_name if item.class_name in names else OTHER,
-        found=Found.of(found),
+        found=Found.of(found, threshold),
         by_all=Said(row(found.probabilities), row(found.scores)),
         by_pictures=Said(row(found.picture_probabilities), row(found.picture_scores)),
         by_fits=by_fits,

@@ -57,6 +57,17 @@ def test_classification_gives_all_figures(common: tuple[str | Path, ...], tmp_pa
     assert page.count("<figure>") >= len(shown)
 
 
+@pytest.mark.parametrize(("threshold", "accepted", "refused"), [(0.0, 1.0, 0.0), (1.0, 0.0, 1.0)])
+def test_the_threshold_moves_what_is_accepted(
+    common: tuple[str | Path, ...], threshold: float, accepted: float, refused: float
+) -> None:
+    arguments = ("evaluate", "classification", *common, "--no-baselines", "--threshold", threshold, "--json")
+    document = shapewright(*arguments).document
+    assert document["threshold"] == threshold
+    unknown = document["unknown"]
+    assert (unknown["accepted_known"], unknown["refused_other"]) == (accepted, refused)
+
+
 def test_retrieval_is_compared_with_both_baselines(common: tuple[str | Path, ...], tmp_path: Path) -> None:
     report = tmp_path / "retrieved.html"
     outcome = shapewright("evaluate", "retrieval", *common, "--json", "--report", report)

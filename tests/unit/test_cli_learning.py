@@ -11,6 +11,7 @@ from PIL import Image
 
 from cli.sources import load_class, load_classes, load_negatives
 from models_store.library.shipped import list_classes, list_further_classes
+from shapewright.classification.evidence import KNOWN_THRESHOLD
 from shapewright.mesh.file import load_mesh
 from shapewright.modeling import Recorder
 
@@ -59,6 +60,16 @@ def test_meshes_are_told_apart(folder: Path) -> None:
     table = shapewright(*arguments, "--views", 2).stdout
     assert "lamp" in table
     assert "slab" in table
+
+
+def test_the_threshold_of_what_is_known_moves(folder: Path) -> None:
+    arguments = ("classify", folder / "query-lamp.off", "-c", folder / "out/classifier.onnx", "--views", 2, "--json")
+    document = shapewright(*arguments).document
+    assert document["threshold"] == KNOWN_THRESHOLD
+    (result,) = document["results"]
+    for threshold, answer in ((0.0, "lamp"), (result["known"] + 1e-6, "unknown")):
+        (moved,) = shapewright(*arguments, "--threshold", threshold).document["results"]
+        assert (moved["answer"], moved["known"]) == (answer, result["known"])
 
 
 def test_a_classification_shows_what_was_looked_at(folder: Path, tmp_path: Path) -> None:
