@@ -56,6 +56,11 @@ class NeighborOut(OutBody):
     class_name: str
     model_id: str
     exemplar: int = Field(description="Its row among the exemplars of the classifier.")
+    values: list[float] | None = Field(
+        default=None,
+        description="In the order of the model's parameters; null if the model was not in the catalog, and in older "
+        "answers.",
+    )
     distance: float = Field(description="Panorama distance of the mesh.")
     usual_distance: float | None = Field(
         description="Within it lie nine of ten variations of models that were left out of the training."
@@ -70,7 +75,8 @@ class ClassificationResultOut(OutBody):
     known: float | None = Field(
         default=None,
         description="Probability that the mesh is of one of the classes at all; null if the classifier has not "
-        "learned what is unknown.",
+        "learned what is unknown. `answer` is `unknown` where it is below 0.5; for other thresholds see `trade_off` of "
+        "the classifier.",
     )
     probabilities: list[ClassProbabilityOut] = Field(
         description="By all evidence, given that it is one of them; most probable class first."

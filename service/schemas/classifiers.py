@@ -7,6 +7,7 @@ from pydantic import Field, PositiveFloat
 from models_store.job_kinds import JobState
 from models_store.tables import ClassifierRow
 from service.schemas.common import Identifier, InBody, Moment, OutBody, PageOut, Seed
+from shapewright.classification.trade_off import trade_off_of
 from shapewright.errors import ClassifierError
 
 
@@ -104,6 +105,16 @@ class ClassifierIn(InBody):
     settings: TrainingSettingsIn = Field(default_factory=TrainingSettingsIn)
 
 
+class TradeOffPointOut(OutBody):
+    """What one threshold of `known` accepts and refuses."""
+
+    threshold: float = Field(description="Meshes whose `known` is below are unknown.")
+    accepted_known: float = Field(
+        description="Share of the variations of models left out of the training that are accepted."
+    )
+    refused_other: float = Field(description="Share of the objects of no class that are unknown.")
+
+
 class ClassifierOut(OutBody):
     """A classifier: one ONNX file that takes images and knows its classes, and exemplars of their geometry."""
 
@@ -115,6 +126,10 @@ class ClassifierOut(OutBody):
     negative_model_ids: list[str]
     settings: dict[str, Any]
     metrics: dict[str, Any] | None
+    trade_off: list[TradeOffPointOut] | None = Field(
+        description="What thresholds of `known` accept and refuse, lowest first; null until the training has "
+        "succeeded, and if it did not measure it."
+    )
     job_id: str | None = Field(description="The training; null for the ready classifier, which ships trained.")
     onnx_url: str | None = Field(description="The ONNX file; null until the training has succeeded.")
     exemplars_url: str | None = Field(
@@ -135,12 +150,18 @@ class ClassifierOut(OutBody):
             negative_model_ids=row.negative_model_ids or [],
             settings=row.settings,
             metrics=row.metrics,
+            trade_off=_trade_off(row),
             job_id=row.job_id,
             onnx_url=f"/v1/classifiers/{row.id}/onnx" if row.onnx_key else None,
             exemplars_url=f"/v1/classifiers/{row.id}/exemplars" if row.exemplars_key else None,
             seconds=row.seconds,
             created_at=row.created_at,
         )
+
+
+def _trade_off(row: ClassifierRow) -> list[TradeOffPointOut] | None:
+    points = trade_off_of(row.metrics or {}, geometry=row.exemplars_key is not None)
+    return None if points is None else [TradeOffPointOut(**point.to_dict()) for point in points]
 
 
 class ClassifierPageOut(PageOut[ClassifierOut]):

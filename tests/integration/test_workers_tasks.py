@@ -205,6 +205,9 @@ def test_a_classifier_is_trained_and_tells_a_brick_from_a_rod(site: Site) -> Non
         nearest, farther = row.result["distances"]
         assert nearest["class_name"] == model.class_name
         assert nearest["distance"] < farther["distance"]
+        neighbor = row.result["neighbor"]
+        assert (neighbor["class_name"], neighbor["model_id"]) == (model.class_name, model.digest)
+        assert neighbor["values"] == [pytest.approx(0.8, abs=0.4)]
         best = {fit["class_name"]: fit for fit in row.result["fits"]}[model.class_name]
         assert best["model_id"] == model.digest
         assert best["values"] == [pytest.approx(0.8, abs=0.2)]

@@ -28,6 +28,10 @@ def two_models(service: LiveService) -> list[str]:
     return [service.add_model(name)["id"] for name in ("box", "crate")]
 
 
+POINT = {"threshold": 0.5, "accepted_known": 0.9, "refused_other": 0.8}
+METRICS: dict[str, Any] = {"accuracy": 0.5, "trade_off": [POINT], "trade_off_pictures": []}
+
+
 def train(service: LiveService, *, exemplars_key: str | None = "classifiers/one.npz") -> dict[str, Any]:
     """Ask for a classifier and do the work."""
     accepted = service.client.post("/v1/classifiers", json={"name": "boxes", "model_ids": two_models(service)}).json()
@@ -39,7 +43,7 @@ def train(service: LiveService, *, exemplars_key: str | None = "classifiers/one.
         onnx_key="classifiers/one.onnx",
         exemplars_key=exemplars_key,
         class_names=["box", "crate"],
-        metrics={"accuracy": 0.5},
+        metrics=METRICS,
         seconds=1.5,
     )
     service.work(accepted["job"]["id"], record)
@@ -59,13 +63,15 @@ def test_a_training_is_accepted_and_its_classifier_comes(service: LiveService) -
     assert waiting["state"] == "queued"
     assert waiting["settings"] == body["settings"]
     assert (waiting["name"], waiting["metrics"], waiting["onnx_url"]) == (None, None, None)
+    assert waiting["trade_off"] is None
     assert (waiting["negative_model_ids"], waiting["exemplars_url"]) == ([], None)
     problem(service.client.get(f"{accepted['url']}/onnx"), 404)
     problem(service.client.get(f"{accepted['url']}/exemplars"), 404)
 
     ready = train(service)
     assert (ready["state"], ready["name"], ready["seconds"]) == ("succeeded", "boxes", 1.5)
-    assert (ready["class_names"], ready["metrics"]) == (["box", "crate"], {"accuracy": 0.5})
+    assert (ready["class_names"], ready["metrics"]) == (["box", "crate"], METRICS)
+    assert ready["trade_off"] == [POINT]
     onnx = service.client.get(ready["onnx_url"])
     assert onnx.content == b"onnx"
     assert "attachment" in onnx.headers["content-disposition"]
@@ -83,6 +89,7 @@ def test_the_exemplars_of_a_classifier_are_a_file_of_their_own(service: LiveServ
     assert again.status_code == 304
     without = train(service, exemplars_key=None)
     assert without["exemplars_url"] is None
+    assert without["trade_off"] == [], "that of the pictures alone"
     problem(service.client.get(f"/v1/classifiers/{without['id']}/exemplars"), 404)
     problem(service.client.get(f"/v1/classifiers/{'0' * 32}/exemplars"), 404)
 
@@ -140,6 +147,7 @@ RESULT: dict[str, Any] = {
         "class_name": "crate",
         "model_id": "a" * 64,
         "exemplar": 3,
+        "values": [0.7],
         "distance": 0.2,
         "usual_distance": 0.15,
     },

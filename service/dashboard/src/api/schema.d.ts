@@ -954,7 +954,7 @@ export interface components {
             answer: string | null;
             /**
              * Known
-             * @description Probability that the mesh is of one of the classes at all; null if the classifier has not learned what is unknown.
+             * @description Probability that the mesh is of one of the classes at all; null if the classifier has not learned what is unknown. `answer` is `unknown` where it is below 0.5; for other thresholds see `trade_off` of the classifier.
              */
             known: number | null;
             /**
@@ -1030,6 +1030,11 @@ export interface components {
             metrics: {
                 [key: string]: unknown;
             } | null;
+            /**
+             * Trade Off
+             * @description What thresholds of `known` accept and refuse, lowest first; null until the training has succeeded, and if it did not measure it.
+             */
+            trade_off: components["schemas"]["TradeOffPointOut"][] | null;
             /**
              * Job Id
              * @description The training; null for the ready classifier, which ships trained.
@@ -2017,6 +2022,11 @@ export interface components {
              */
             exemplar: number;
             /**
+             * Values
+             * @description In the order of the model's parameters; null if the model was not in the catalog, and in older answers.
+             */
+            values: number[] | null;
+            /**
              * Distance
              * @description Panorama distance of the mesh.
              */
@@ -2584,6 +2594,27 @@ export interface components {
              * @default 1
              */
             order: number;
+        };
+        /**
+         * TradeOffPointOut
+         * @description What one threshold of `known` accepts and refuses.
+         */
+        TradeOffPointOut: {
+            /**
+             * Threshold
+             * @description Meshes whose `known` is below are unknown.
+             */
+            threshold: number;
+            /**
+             * Accepted Known
+             * @description Share of the variations of models left out of the training that are accepted.
+             */
+            accepted_known: number;
+            /**
+             * Refused Other
+             * @description Share of the objects of no class that are unknown.
+             */
+            refused_other: number;
         };
         /**
          * TrainingSettingsIn
