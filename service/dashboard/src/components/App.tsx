@@ -16,6 +16,7 @@ import { DropTarget } from "./DropTarget";
 import { FitLegend, VIEW_TITLES } from "./FitLegend";
 import { Header } from "./Header";
 import { JobList } from "./JobList";
+import { Legend } from "./Legend";
 import { MeshInspector } from "./MeshInspector";
 import { MeshList } from "./MeshList";
 import { ModelInspector } from "./ModelInspector";
@@ -48,13 +49,23 @@ export function App() {
   const stage = showsMesh
     ? {
         title: meshSession.mesh?.file_name ?? "Mesh",
-        subtitle: fitView.hasFit ? VIEW_TITLES[fitView.view] : "Query",
-        layers: fitView.layers,
+        subtitle: fitView.hasFit
+          ? VIEW_TITLES[fitView.view]
+          : meshSession.neighbor.shown
+            ? "Query, and the nearest variation of its class"
+            : "Query",
+        layers: meshSession.layers,
         kind: "mesh" as const,
         fittedUp: meshSession.fittedUp,
         busy: meshSession.busy,
         error: meshSession.error,
-        legend: fitView.hasFit ? <FitLegend {...fitView} residuals={residuals} /> : null,
+        legend: fitView.hasFit ? (
+          <FitLegend {...fitView} legend={meshSession.legend} adjust={meshSession.adjust} residuals={residuals} />
+        ) : meshSession.legend.length > 1 ? (
+          <div className="fit-legend">
+            <Legend entries={meshSession.legend} onChange={meshSession.adjust} />
+          </div>
+        ) : null,
       }
     : {
         title: model ? humanize(model.name) : "Shapewright",
@@ -149,6 +160,9 @@ export function App() {
               classifierId={meshSession.classifierId}
               unaskedError={question.unaskedError(meshSession.mesh.id)}
               onClassifier={meshSession.setClassifier}
+              threshold={meshSession.threshold}
+              onThreshold={meshSession.setThreshold}
+              neighbor={meshSession.neighbor}
               foundClass={meshSession.foundClass}
               estimation={meshSession.estimation}
               estimations={meshSession.estimations}

@@ -3,17 +3,24 @@ import { useState } from "react";
 import { useClassifications, useClassifiers, useClassify } from "../api/queries";
 import type { Classification } from "../api/types";
 import { useJob } from "../hooks/useJob";
+import type { ShownNeighbor } from "../hooks/useNeighbor";
 import { count, duration, humanize, percent, significant } from "../lib/format";
 import { verdictOf } from "../lib/verdict";
 import { ClassifierPicker } from "./ClassifierPicker";
 import { JobProgress } from "./JobProgress";
+import { NearestVariation } from "./NearestVariation";
 import { Problem } from "./Problem";
+import { ThresholdSlider } from "./ThresholdSlider";
 
 interface ClassificationPanelProps {
   meshId: string;
   classifierId: string | null;
   onClassifier: (id: string) => void;
   unaskedError: unknown;
+  /** Below it a mesh is unknown. */
+  threshold: number;
+  onThreshold: (threshold: number) => void;
+  neighbor: ShownNeighbor;
 }
 
 /** The newest classification of a mesh, whatever its state. */
@@ -28,7 +35,7 @@ export function newestOf<Item extends { mesh_id: string; created_at: string }>(
 
 /** Which class the mesh belongs to, with the probability of each. */
 export function ClassificationPanel(props: ClassificationPanelProps) {
-  const { meshId, classifierId, onClassifier, unaskedError } = props;
+  const { meshId, classifierId, onClassifier, unaskedError, threshold, onThreshold, neighbor } = props;
   const classifications = useClassifications();
   const classifiers = useClassifiers();
   const classify = useClassify();
@@ -80,7 +87,14 @@ export function ClassificationPanel(props: ClassificationPanelProps) {
       {newest?.state === "cancelled" && <p className="muted">The last classification was cancelled.</p>}
       {newest?.result && (
         <>
-          <Verdict result={newest.result} />
+          <Answer result={newest.result} threshold={threshold} neighbor={neighbor} />
+          {newest.result.known !== null && (
+            <ThresholdSlider
+              threshold={threshold}
+              onThreshold={onThreshold}
+              tradeOff={classifier?.trade_off ?? null}
+            />
+          )}
           <Probabilities result={newest.result} classifier={classifier?.name ?? null} />
           {newest.result.fits && <Fits fits={newest.result.fits} />}
         </>
@@ -96,12 +110,13 @@ const SHOWN_CLASSES = 6;
 
 type Result = NonNullable<Classification["result"]>;
 
-function Verdict({ result }: { result: Result }) {
-  const verdict = verdictOf(result);
+function Answer({ result, threshold, neighbor }: { result: Result; threshold: number; neighbor: ShownNeighbor }) {
+  const verdict = verdictOf(result, threshold);
   return (
     <div className="answer" data-known={verdict.known} data-testid="answer">
       <strong>{verdict.title}</strong>
       {verdict.detail && <span>{verdict.detail}</span>}
+      {result.neighbor && <NearestVariation neighbor={result.neighbor} known={verdict.known} {...neighbor} />}
     </div>
   );
 }

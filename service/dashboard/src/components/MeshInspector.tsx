@@ -1,4 +1,5 @@
 import type { Estimation, Mesh } from "../api/types";
+import type { ShownNeighbor } from "../hooks/useNeighbor";
 import { count, meshSize, significant } from "../lib/format";
 import { ClassificationPanel } from "./ClassificationPanel";
 import { EstimationPanel } from "./EstimationPanel";
@@ -9,6 +10,10 @@ interface MeshInspectorProps {
   onClassifier: (id: string) => void;
   /** Why it was not asked what the mesh is when it was uploaded; `null` if it was. */
   unaskedError: unknown;
+  /** Below it a mesh is unknown. */
+  threshold: number;
+  onThreshold: (threshold: number) => void;
+  neighbor: ShownNeighbor;
   foundClass: string | null;
   estimation: Estimation | undefined;
   estimations: Estimation[];
@@ -19,7 +24,8 @@ interface MeshInspectorProps {
 
 /** What is known about an unknown mesh, and the two questions that can be asked about it. */
 export function MeshInspector(props: MeshInspectorProps) {
-  const { mesh, classifierId, onClassifier, unaskedError, foundClass, estimation, estimations, answer, onAnswer } = props;
+  const { mesh, classifierId, onClassifier, unaskedError, threshold, onThreshold, neighbor } = props;
+  const { foundClass, estimation, estimations, answer, onAnswer } = props;
   const isCloud = mesh.kind === "point_cloud";
   return (
     <section className="inspector" aria-label="Mesh">
@@ -46,6 +52,9 @@ export function MeshInspector(props: MeshInspectorProps) {
         classifierId={classifierId}
         onClassifier={onClassifier}
         unaskedError={unaskedError}
+        threshold={threshold}
+        onThreshold={onThreshold}
+        neighbor={neighbor}
       />
       {isCloud ? (
         <p className="muted">

@@ -86,13 +86,8 @@ export function useFitView(meshId: string | null, queryGlb: ArrayBuffer | undefi
     return [query, fit];
   }, [meshId, queryGlb, hasFit, estimation, view, side, residualsGlb.data, number, shownGlb, queryLook, look.fit, other]);
 
-  const legend: LegendEntry[] =
-    hasFit && view === "overlay"
-      ? [
-          { id: "query", label: "Query", tone: "query", ...queryLook },
-          { id: "fit", label: "Fitted model", tone: "fit", ...look.fit },
-        ]
-      : [];
+  const legend: LegendEntry[] = [{ id: "query", label: "Query", tone: "query", ...queryLook }];
+  if (hasFit) legend.push({ id: "fit", label: "Fitted model", tone: "fit", ...look.fit });
 
   return {
     hasFit,

@@ -4,6 +4,9 @@ import { humanize, percent } from "./format";
 
 type Answer = Pick<NonNullable<Classification["result"]>, "class_name" | "answer" | "known">;
 
+/** The service's own threshold of `known`: below it a mesh is unknown. */
+export const KNOWN_THRESHOLD = 0.5;
+
 export interface Verdict {
   /** Whether the mesh is taken for one of the classes at all. */
   known: boolean;
@@ -12,10 +15,11 @@ export interface Verdict {
   detail: string | null;
 }
 
-/** `Goblet` or `Unknown`, and what stands behind it. */
-export function verdictOf({ class_name, answer, known }: Answer): Verdict {
+/** `Goblet` or `Unknown` at a threshold, and what stands behind it. */
+export function verdictOf({ class_name, answer, known }: Answer, threshold: number): Verdict {
+  const accepted = known === null ? answer !== "unknown" : known >= threshold;
   const odds = known === null ? null : `${percent(known)} sure that it is of any class`;
-  if (answer !== "unknown") return { known: true, title: humanize(class_name), detail: odds };
+  if (accepted) return { known: true, title: humanize(class_name), detail: odds };
   const nearest = `Nearest class: ${humanize(class_name)}`;
   return { known: false, title: "Unknown", detail: odds === null ? nearest : `${nearest}; ${odds}` };
 }

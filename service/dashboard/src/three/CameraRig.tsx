@@ -6,6 +6,8 @@ import { Frustum, Matrix4, Spherical, Vector3 } from "three";
 import type { PerspectiveCamera, Sphere } from "three";
 import type { ElementRef } from "react";
 
+import { START_DIRECTION } from "./up";
+
 export interface CameraCommands {
   fit: () => void;
   turn: (azimuth_rad: number, elevation_rad: number) => void;
@@ -17,12 +19,14 @@ interface CameraRigProps {
   bounds: Sphere | null;
   /** The camera is framed anew when this changes. */
   frameKey: string;
+  /** Something stands beside the subject: the camera frames both when it comes, and the subject when it goes. */
+  accompanied: boolean;
   /** A control that changes the mesh is being held: the camera stays where it is. */
   held: boolean;
   onReady: (commands: CameraCommands) => void;
 }
 
-const START_DIRECTION = new Vector3(0.75, 0.42, 1).normalize();
+const START = new Vector3(...START_DIRECTION).normalize();
 const MARGIN = 1.08;
 const GLIDE_MS = 320;
 
@@ -35,7 +39,7 @@ function isInView(camera: PerspectiveCamera, sphere: Sphere): boolean {
   return frustum.planes.slice(0, 4).every((plane) => plane.distanceToPoint(sphere.center) > sphere.radius * 0.9);
 }
 
-export function CameraRig({ bounds, frameKey, held, onReady }: CameraRigProps) {
+export function CameraRig({ bounds, frameKey, accompanied, held, onReady }: CameraRigProps) {
   const camera = useThree((state) => state.camera) as PerspectiveCamera;
   const size = useThree((state) => state.size);
   const invalidate = useThree((state) => state.invalidate);
@@ -89,8 +93,14 @@ export function CameraRig({ bounds, frameKey, held, onReady }: CameraRigProps) {
 
   const hasBounds = bounds !== null;
   useEffect(() => {
-    if (hasBounds) frame(START_DIRECTION, false);
+    if (hasBounds) frame(START, false);
   }, [frameKey, hasBounds, frame]);
+
+  const wasAccompanied = useRef(accompanied);
+  useEffect(() => {
+    if (wasAccompanied.current !== accompanied) frame(null, true);
+    wasAccompanied.current = accompanied;
+  }, [accompanied, frame]);
 
   // A mesh that was all in view and has outgrown it is followed, once the hand is off the slider. A viewer who had
   // come closer to look at a part is left alone.

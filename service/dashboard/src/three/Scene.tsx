@@ -5,6 +5,7 @@ import { useCallback, useEffect, useMemo, useRef, useState } from "react";
 import { Box3, Matrix4, Quaternion, Sphere, Vector3 } from "three";
 import type { DirectionalLight } from "three";
 
+import { placeBeside } from "./beside";
 import { CameraRig } from "./CameraRig";
 import { Cloud } from "./Cloud";
 import type { CameraCommands } from "./CameraRig";
@@ -49,11 +50,16 @@ export function Scene({ layers, palette, showEdges, showGrid, up, held, onCamera
 
   const first = layers[0] ? decoded[layers[0].id] : undefined;
   const subject = first?.subject ?? null;
-  const { sphere, floor } = useMemo(() => {
-    if (!first?.geometry.boundingBox) return { sphere: null, floor: 0 };
+  const companion = layers.find(({ beside, visible }) => beside && visible);
+  const other = companion ? decoded[companion.id] : undefined;
+  const { sphere, floor, beside } = useMemo(() => {
+    if (!first?.geometry.boundingBox) return { sphere: null, floor: 0, beside: null };
     const box = new Box3().copy(first.geometry.boundingBox).applyMatrix4(matrix);
-    return { sphere: box.getBoundingSphere(new Sphere()), floor: box.min.y };
-  }, [first, matrix]);
+    const own = other?.geometry.boundingBox;
+    const placed = own ? placeBeside(box, own) : null;
+    const all = placed ? box.clone().union(placed.box) : box;
+    return { sphere: all.getBoundingSphere(new Sphere()), floor: box.min.y, beside: placed };
+  }, [first, other, matrix]);
 
   const invalidate = useThree((state) => state.invalidate);
   useEffect(() => {
@@ -89,19 +95,24 @@ export function Scene({ layers, palette, showEdges, showGrid, up, held, onCamera
           fadeStrength={2.5}
         />
       )}
-      <group matrix={matrix} matrixAutoUpdate={false}>
-        {layers.map((layer) => (
+      {layers.map((layer) => (
+        <group key={layer.id} matrix={layer.beside ? (beside?.matrix ?? matrix) : matrix} matrixAutoUpdate={false}>
           <LayerSurface
-            key={layer.id}
             layer={layer}
             palette={palette}
             showEdges={showEdges}
             onDecoded={report}
             onError={onError}
           />
-        ))}
-      </group>
-      <CameraRig bounds={sphere} frameKey={`${subject} ${up.join(" ")}`} held={held} onReady={onCamera} />
+        </group>
+      ))}
+      <CameraRig
+        bounds={sphere}
+        frameKey={`${subject} ${up.join(" ")}`}
+        accompanied={beside !== null}
+        held={held}
+        onReady={onCamera}
+      />
     </>
   );
 }

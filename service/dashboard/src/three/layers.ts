@@ -17,6 +17,8 @@ export interface Layer {
   coloredNode?: string;
   /** Where the mesh stands, if not in the coordinates of the file that is looked at. */
   pose?: Placement;
+  /** The mesh stands beside the first layer, as large, in coordinates of a model of its own. */
+  beside?: boolean;
 }
 
 /** `scale * rotation @ point + translation`; the rotation row by row. */

@@ -7,6 +7,9 @@ export type Up = "y" | "z" | "model";
 
 const AXES: Record<"y" | "z", Vec3> = { y: [0, 1, 0], z: [0, 0, 1] };
 
+/** Where the camera stands at first, seen from the mesh; y points up on the screen. */
+export const START_DIRECTION: Vec3 = [0.75, 0.42, 1];
+
 /** Procedural models stand on the xy plane; most meshes from elsewhere have y up. */
 export const DEFAULT_UP = { model: "z", mesh: "y" } as const;
 
