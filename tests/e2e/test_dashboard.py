@@ -82,7 +82,9 @@ def site(built_dashboard: None, tmp_path_factory: pytest.TempPathFactory) -> Ite
 def fresh_url(built_dashboard: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """The address of a service as it begins: what ships, but with a small ready classifier of two classes."""
     folder = tmp_path_factory.mktemp("fresh")
-    classes = {name: [compile_model(load_shipped(name))] for name in ("glass_with_stem", "sword")}
+    glasses = list_classes()["glass_with_stem"][:2]  # two, so that one can be left out where thresholds are measured
+    classes = {"glass_with_stem": [compile_model(load_shipped(name)) for name in glasses]}
+    classes["sword"] = [compile_model(load_shipped("sword"))]
     settings = TrainingSettings(variations=12, images_per_variation=2, image_size=96, negatives=12, epochs=20)
     trained = train_classifier(classes, settings)
     onnx = folder / READY_FILE
@@ -248,6 +250,46 @@ def test_the_page_opens_on_something_to_do(new_page: Callable[..., Page], fresh_
     assert asked.value.post_data_json["class_name"] == "glass_with_stem"
     progress = page.get_by_role("progressbar", name="Estimating parameters")
     expect(progress.or_(page.get_by_test_id("estimation-result")).first).to_be_visible()
+
+
+def test_the_threshold_moves_and_an_unknown_mesh_says_why(
+    new_page: Callable[..., Page], fresh_url: str, tmp_path: Path
+) -> None:
+    stool = compile_model(_stool())
+    path = tmp_path / "found stool.off"
+    stool.instance(stool.base_values()).save(path)
+    page = new_page(url=fresh_url)
+    page.get_by_test_id("mesh-file").set_input_files(path)
+    answer, neighbor = page.get_by_test_id("answer"), page.get_by_test_id("neighbor")
+    expect(answer).to_be_visible()
+    stage = _drawn(page, "mesh ")
+    slider, threshold = page.get_by_role("slider", name="Unknown below"), page.get_by_test_id("threshold")
+
+    # Everything is known: the mesh stands alone, until the variation is asked for.
+    slider.press("Home")
+    expect(answer).to_have_attribute("data-known", "true")
+    expect(threshold).to_contain_text("Accepts about 100 % of the objects of a class and refuses about 0 %")
+    expect(neighbor).to_contain_text("from the nearest variation")
+    alone = _picture(stage, tmp_path / "alone.png")
+
+    # Nothing is known: the answer says why, and the nearest variation stands beside the mesh.
+    slider.press("End")
+    expect(answer).to_have_attribute("data-known", "false")
+    expect(answer).to_contain_text("Nearest class")
+    expect(threshold).to_contain_text("Accepts about 0 % of the objects of a class and refuses about 100 %")
+    expect(neighbor).to_contain_text(re.compile(r"The nearest variation of this class is at distance \d\.\d\d"))
+    beside = _picture(stage, tmp_path / "beside.png", _unlike(alone))
+    page.screenshot(path=tmp_path / "unknown.png")
+
+    toggle = neighbor.get_by_role("button", name="Nearest variation")
+    toggle.click()
+    _picture(stage, tmp_path / "alone-again.png", _like(alone))
+    page.get_by_role("button", name="Reset the threshold").click()
+    expect(slider).to_have_value("0.5")
+    toggle.click()
+    _picture(stage, tmp_path / "beside-again.png", _like(beside))
+    neighbor.get_by_role("link", name="Open its model").click()
+    _drawn(page, "model ")
 
 
 def test_the_start_page_says_what_is_wrong_with_a_file(

@@ -23,6 +23,10 @@ describe("the nearest variation in words", () => {
     );
   });
 
+  it("does not call a distance farther than one that reads the same", () => {
+    expect(neighborText({ ...neighbor, distance: 0.232 }, false)).toContain("at distance 0.23, which is usual");
+  });
+
   it("is short about a mesh that is known", () => {
     expect(neighborText(neighbor, true)).toBe("Distance 0.41 from the nearest variation; up to 0.23 is usual.");
   });

@@ -21,7 +21,7 @@ export function NearestVariation({ neighbor, known, instance, shown, show }: Nea
             <Icon name={shown ? "eye" : "eyeOff"} size={14} /> Nearest variation
           </button>
           <a className="quiet" href={formatRoute({ kind: "model", id: instance.modelId, values: instance.values })}>
-            Open in model <Icon name="arrow" size={14} />
+            Open its model <Icon name="arrow" size={14} />
           </a>
         </div>
       )}

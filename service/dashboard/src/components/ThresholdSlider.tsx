@@ -47,7 +47,7 @@ export function ThresholdSlider({ threshold, onThreshold, tradeOff }: ThresholdS
         />
       </div>
       <p className="hint" id={`${id}-cost`} title={cost === null ? undefined : "Measured on models left out of the training"}>
-        {cost ?? "What it accepts and refuses was not measured when this classifier was trained."}
+        {cost ?? "The effect of the threshold was not measured for this classifier."}
       </p>
     </div>
   );

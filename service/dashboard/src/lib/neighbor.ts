@@ -12,7 +12,7 @@ export function neighborText({ distance, usual_distance: usual }: Neighbor, know
   const where = `The nearest variation of this class is at distance ${far}`;
   if (usual === null) return `${where}.`;
   const limit = `usual for the class (up to ${usual.toFixed(2)})`;
-  if (distance > usual) return `${where}, farther than is ${limit}.`;
+  if (Number(far) > Number(usual.toFixed(2))) return `${where}, farther than is ${limit}.`;
   return `${where}, which is ${limit}. The pictures of the mesh do not look enough like it.`;
 }
 
