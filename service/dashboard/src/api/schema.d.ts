@@ -2666,6 +2666,8 @@ export interface components {
              * @description Share of the variations that measure the accuracy.
              */
             held_out?: number | null;
+            /** Hidden */
+            hidden?: number | null;
             /** Epochs */
             epochs?: number | null;
             /**
