@@ -29,7 +29,7 @@ def ready_settings() -> "TrainingSettings":
     """Return the settings that the classifier is trained with."""
     from shapewright.training import TrainingSettings
 
-    return TrainingSettings(variations=1000, images_per_variation=10, negatives=500, exemplars_per_class=220, seed=0)
+    return TrainingSettings(exemplars_per_class=220)
 
 
 def make(output: Path, settings: "TrainingSettings", cache: Path | None = None) -> "TrainedClassifier":

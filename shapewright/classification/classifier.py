@@ -28,9 +28,6 @@ from shapewright.network.session import BATCH_SIZE, make_session
 from shapewright.rendering.views import spread_views
 
 DEFAULT_VIEWS: Final = 10
-FAR: Final = 0.35
-"""Panorama distance of the nearest exemplar from which a mesh is compared by surfels, too: noise and holes make even a
-familiar shape look far, an ordinary query is nearer."""
 GROUND_PREFERENCE: Final = 0.25
 """How much lower the best score may be without the ground than with it, for the ground to be left out all the same."""
 
@@ -188,10 +185,6 @@ class Classifier:
             descriptor = panorama_descriptor(surface.vertices, surface.faces)
             every = self.exemplars.distances(descriptor)
             distances, _ = self.exemplars.nearest(every)
-            if distances.min() > FAR and (smooth := sight.smooth_surface()) is not None:
-                other = self.exemplars.distances(panorama_descriptor(smooth.vertices, smooth.faces))
-                every = np.minimum(every, other)
-                distances, _ = self.exemplars.nearest(every)
         return _Seen(
             images=images,
             per_view=per_view,

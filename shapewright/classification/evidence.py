@@ -22,7 +22,7 @@ FLOOR: Final = 1e-3
 """No single source of evidence rules a class out."""
 KNOWN_THRESHOLD: Final = 0.5
 """A mesh whose ``known`` is below is answered with ``unknown``."""
-REFUSED: Final = 0.875
+REFUSED: Final = 0.86
 """Share of objects of no class, among those that a classifier is tried on, that are answered with ``unknown``."""
 UNKNOWN: Final = "unknown"
 """The answer for a mesh of none of the classes."""

@@ -55,13 +55,13 @@ class Reading:
         """
         return splat_cloud(self.points, self.spacing if self.surface is None else 0.0)
 
-    def described_surface(self) -> TriangleMesh:
-        """Return what is compared: the mesh, or surfels."""
-        return self.smooth_surface() if self.surface is None else self.surface
+    def described_surface(self, *, by_surfels: bool = False) -> TriangleMesh:
+        """Return what is compared: the mesh, or surfels, which neither noise nor small holes change much.
 
-    def smooth_surface(self) -> TriangleMesh:
-        """Return surfels, which neither noise nor small holes change much, in place of the surface."""
-        return surfels(self.points, self.spacing)
+        Args:
+            by_surfels: take surfels in place of a mesh, too; a point cloud has nothing else.
+        """
+        return surfels(self.points, self.spacing) if by_surfels or self.surface is None else self.surface
 
 
 def plain_reading(query: TriangleMesh | PointCloud) -> Reading:

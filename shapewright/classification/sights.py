@@ -25,9 +25,6 @@ class Sight(Protocol):
     def surface(self) -> TriangleMesh:
         """Return what is compared with exemplars."""
 
-    def smooth_surface(self) -> TriangleMesh | None:
-        """Return a smooth stand-in for the surface, if there is one."""
-
 
 @dataclass(frozen=True, eq=False)
 class DrawnMesh:
@@ -45,10 +42,6 @@ class DrawnMesh:
     def surface(self) -> TriangleMesh:
         """Return the mesh itself."""
         return plain_reading(self.query).described_surface()
-
-    def smooth_surface(self) -> TriangleMesh | None:
-        """Return nothing: triangles are compared as they are drawn."""
-        return None
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,10 +61,6 @@ class DrawnPoints:
     def surface(self) -> TriangleMesh:
         """Return the mesh that was read, or surfels of a point cloud."""
         return self.reading.described_surface()
-
-    def smooth_surface(self) -> TriangleMesh | None:
-        """Return surfels, unless these are the surface already."""
-        return None if self.reading.surface is None else self.reading.smooth_surface()
 
 
 def sights_of(query: TriangleMesh | PointCloud, look: Look) -> list[Sight]:

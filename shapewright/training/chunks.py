@@ -38,6 +38,8 @@ from shapewright.training.sources import MESHES_VERSION, Source
 
 BLOCK: Final = 8
 """Meshes that are drawn and described together; bounds the memory."""
+DESCRIPTORS_VERSION: Final = 1
+"""Raise it when the descriptor of the same object is another one."""
 PICTURES_VERSION: Final = 3
 """Raise it when the renderer draws something else for the same settings."""
 _DESCRIBING_THREADS: Final = 2
@@ -100,7 +102,7 @@ def descriptors_key(chunk: Chunk, settings: TrainingSettings) -> str:
     """Where the panorama descriptors of a chunk's objects are stored."""
     from shapewright.distances.descriptor_files import descriptor_version
 
-    objects = _digest(_OBJECT_SETTINGS, settings, READINGS_VERSION)
+    objects = _digest(_OBJECT_SETTINGS, settings, READINGS_VERSION, DESCRIPTORS_VERSION)
     return f"panoramas/v{descriptor_version()}-{objects}/{_series_name(chunk, settings)}"
 
 
@@ -116,9 +118,9 @@ _PICTURE_SETTINGS: Final = (
 )
 
 
-def _digest(names: Sequence[str], settings: TrainingSettings, version: int) -> str:
+def _digest(names: Sequence[str], settings: TrainingSettings, *versions: int) -> str:
     """Return what tells settings apart of which something depends."""
-    values = {name: settings.to_dict()[name] for name in names} | {"versions": [version, BREAKS_VERSION]}
+    values = {name: settings.to_dict()[name] for name in names} | {"versions": [*versions, BREAKS_VERSION]}
     return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()[:12]
 
 
@@ -177,7 +179,7 @@ def store_chunk(
             pending.append(
                 (
                     None if images is None else pool.submit(extractor, images),
-                    pool.submit(_panoramas, block) if needs_panoramas else None,
+                    pool.submit(_panoramas, block, done) if needs_panoramas else None,
                 )
             )
             done += len(block)
@@ -215,13 +217,20 @@ def _pictures(
     return draw(objects, rotations.reshape(-1, 3, 3), scales.reshape(-1), settings.look, shown=shown)
 
 
-def _panoramas(objects: Sequence[TriangleMesh | PointCloud]) -> Float32[np.ndarray, "N D"]:
+def _panoramas(objects: Sequence[TriangleMesh | PointCloud], first: int) -> Float32[np.ndarray, "N D"]:
+    """Describe objects of a series from number ``first`` on; every other one by surfels, also where it has faces.
+
+    What a scanner and a hole do to a surface makes it unlike any whole one, but hardly unlike its surfels.
+    """
     import numba
 
     from shapewright.distances.panorama import panorama_descriptor
 
     numba.set_num_threads(1)  # of this thread: the other cores draw
-    surfaces = [plain_reading(one).described_surface() for one in objects]
+    surfaces = [
+        plain_reading(one).described_surface(by_surfels=number % 2 == 1)
+        for number, one in enumerate(objects, start=first)
+    ]
     return np.stack([panorama_descriptor(surface.vertices, surface.faces).to_array() for surface in surfaces])
 
 

@@ -55,7 +55,7 @@ class TrainingSettings:
     images_per_variation: int = 10
     image_size: int = 0
     scale_range: tuple[float, float] = (0.7, 1.0)
-    negatives: int = 500
+    negatives: int = 1500
     exemplars: bool = True
     exemplars_per_class: int = 0
     vary: bool = True

@@ -69,6 +69,15 @@ def test_a_left_out_model_has_really_not_been_learned() -> None:
     assert found.temperature > 1.5, "it has learned to be less sure"
 
 
+def test_variations_of_models_that_were_learned_take_part_in_the_curve() -> None:
+    """Half of them are: where all that is left out looks like an object of no class, these are accepted still."""
+    looks = {name: direction(number) + direction(6) for number, name in enumerate(("a1", "b1", "a2", "b2"))}
+    found = calibrated(lambda name: looks.get(name, direction(6)))
+    points = found.metrics["trade_off_pictures"]
+    assert max(point["accepted_known"] for point in points if point["refused_other"] == 1.0) > 0.25
+    assert found.metrics["left_out_auroc_pictures"] < 0.5, "the forecast is of left-out models alone"
+
+
 def test_without_objects_of_no_class_there_is_no_curve() -> None:
     settings = TrainingSettings(variations=20, images_per_variation=1, negatives=0, exemplars=False)
     places = {"a1": 0, "a2": 0, "b1": 1, "b2": 1}
