@@ -2,8 +2,12 @@
 
 import numpy as np
 import pytest
+from beartype.roar import BeartypeCallHintViolation
 from jaxtyping import TypeCheckError
 
+from shapewright.distances.alignment import Pose
+from shapewright.mesh.file import load_mesh
+from shapewright.modeling import Condition
 from shapewright.training.calibration import calibration_error
 
 
@@ -15,3 +19,19 @@ def test_shapes_that_do_not_agree_are_noticed() -> None:
 def test_a_wrong_type_is_noticed() -> None:
     with pytest.raises(TypeCheckError, match="confidence"):
         calibration_error([0.5], np.ones(1, dtype=bool))  # type: ignore[arg-type]
+
+
+def test_a_wrong_type_is_noticed_where_there_are_no_arrays() -> None:
+    with pytest.raises(BeartypeCallHintViolation, match="path"):
+        load_mesh(3)  # type: ignore[arg-type]
+
+
+def test_the_fields_of_values_are_checked() -> None:
+    with pytest.raises(BeartypeCallHintViolation, match="minimum"):
+        Condition("back", minimum="low", maximum=1.0)  # type: ignore[arg-type]
+    with pytest.raises(TypeCheckError, match="rotation"):
+        Pose(np.eye(2), np.zeros(3), 1.0)
+
+
+def test_an_int_may_stand_for_a_float() -> None:
+    assert Condition("back", minimum=0, maximum=1).maximum == 1
