@@ -31,8 +31,10 @@ QUICK = {
     "surface_points": 50,
     "image_size": 16,
     "step_sizes": [1.0],
+    "model_points": "vertices",
+    "alignment": {"translation_step": 0.05, "rotation_step_rad": 0.15, "scale_step": 0.05},
 }
-"""Settings of an estimation that takes a second beside its bank, which takes about one for 1000 samples."""
+"""Settings of an estimation that takes less than a second beside its bank, which takes about one for 1000 samples."""
 ENDLESS = 10_000_000
 """Samples of an estimation that does not end while a test runs."""
 

@@ -29,7 +29,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     shapewright("instance", lamp, "-o", folder / "query-lamp.off", "--set", "post_length=1.4")
     shapewright("instance", folder / "slab.json", "-o", folder / "query-slab.obj", "--set", "thickness=1.7")
     small = folder / "small.json"
-    small.write_text(json.dumps({"image_size": 96, "epochs": 30}))
+    small.write_text(json.dumps({"image_size": 96, "epochs": 30, "negatives": 12}))
     trained = shapewright(
         "train", lamp, folder / "slab.json", "-o", folder / "out" / "classifier.onnx", "--variations", 12,
         "--images", 4, "--settings", small, "--json",
@@ -131,7 +131,9 @@ def test_settings_of_the_reference_are_refused_without_it(folder: Path) -> None:
 
 def test_of_several_models_the_best_one_is_found(folder: Path, tmp_path: Path) -> None:
     small = tmp_path / "small.json"
-    small.write_text('{"surface_points": 50, "image_size": 16, "subdivision_steps": 0, "step_sizes": [0.5]}')
+    steps = {"translation_step": 0.05, "rotation_step_rad": 0.15, "scale_step": 0.05}
+    settings = {"surface_points": 50, "image_size": 16, "subdivision_steps": 0, "step_sizes": [0.5]}
+    small.write_text(json.dumps({**settings, "model_points": "vertices", "alignment": steps}))
     arguments = (
         "estimate", folder / "query-lamp.off", "-m", folder / "slab.json", "-m", folder / "lamp.json",
         "--estimator", "reference", "--samples", 30, "--settings", small,
