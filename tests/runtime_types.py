@@ -21,7 +21,7 @@ from jaxtyping import AbstractArray, jaxtyped
 check = beartype(conf=BeartypeConf(is_pep484_tower=True))
 
 UNCHECKED: Final = frozenset(
-    {"shapewright.modeling.elements", "shapewright.modeling.fields", "shapewright.modeling.subdivision"}
+    f"shapewright.modeling.{name}" for name in ("control_mesh", "elements", "fields", "program", "subdivision")
 )
 """They read, write or collect single numbers: to check millions of such calls takes minutes and finds nothing that the
 static types, and the checks of those who use them, do not tell."""

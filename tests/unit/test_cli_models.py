@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from chair_model import armchair
-from command_line import shapewright, write_lamp_model
+from command_line import Outcome, shapewright, write_lamp_model
 
 if TYPE_CHECKING:
     from shapewright.modeling import ProceduralModel
@@ -17,16 +17,29 @@ def lamp(tmp_path: Path) -> Path:
     return write_lamp_model(tmp_path)
 
 
-def test_list_names_the_shipped_models(library_models: "dict[str, ProceduralModel]") -> None:
-    listed = shapewright("models", "list", "--json").document["models"]
+@pytest.fixture(scope="module")
+def document() -> Outcome:
+    """The list as a document."""
+    return shapewright("models", "list", "--json")
+
+
+@pytest.fixture(scope="module")
+def table() -> Outcome:
+    """The list for people."""
+    return shapewright("models", "list")
+
+
+def test_list_names_the_shipped_models(
+    library_models: "dict[str, ProceduralModel]", document: Outcome, table: Outcome
+) -> None:
+    listed = document.document["models"]
     assert {item["name"]: item["digest"] for item in listed} == {m.name: m.digest for m in library_models.values()}
-    table = shapewright("models", "list").stdout
-    assert all(name in table for name in library_models)
+    assert all(name in table.stdout for name in library_models)
 
 
-def test_without_more_words_the_models_are_listed() -> None:
-    for arguments in ([], ["--json"]):
-        assert shapewright("models", *arguments).stdout == shapewright("models", "list", *arguments).stdout
+def test_without_more_words_the_models_are_listed(document: Outcome, table: Outcome) -> None:
+    assert shapewright("models").stdout == table.stdout
+    assert shapewright("models", "--json").stdout == document.stdout
 
 
 def test_show_tells_ranges_and_units(lamp: Path) -> None:
@@ -63,10 +76,12 @@ def test_show_tells_options_dependences_parts_and_symmetry(tmp_path: Path, monke
         assert expected in text
 
 
-def test_the_list_names_each_class_once(library_models: "dict[str, ProceduralModel]") -> None:
-    listed = shapewright("models", "list", "--json").document["models"]
+def test_the_list_names_each_class_once(
+    library_models: "dict[str, ProceduralModel]", document: Outcome, table: Outcome
+) -> None:
+    listed = document.document["models"]
     assert [item["class_name"] for item in listed] == sorted(item["class_name"] for item in listed)
-    lines = shapewright("models", "list").stdout.splitlines()
+    lines = table.stdout.splitlines()
     for class_name in {model.class_name for model in library_models.values()}:
         assert len([line for line in lines if line.startswith(f"{class_name} ")]) == 1
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from chair_model import armchair
 from scipy.spatial import cKDTree
+from shipped_models import compiled_shipped
 
-from models_store.library.shipped import list_shipped, load_shipped
+from models_store.library.shipped import list_shipped
 from shapewright.distances.surface import uniform_points
 from shapewright.estimation import EstimationSettings, Query
 from shapewright.estimation.comparison import Comparison
@@ -26,7 +27,7 @@ def samples(chair: CompiledModel) -> SurfaceSamples:
 
 @pytest.mark.parametrize("name", list(list_shipped()))
 def test_a_base_instance_passes_both_thresholds_against_itself(name: str) -> None:
-    compiled = compile_model(load_shipped(name))
+    compiled = compiled_shipped(name)
     settings = EstimationSettings(image_size=64)
     instance = compiled.instance(compiled.base_values())
     comparison = Comparison(PreparedQuery(Query(instance), settings), compiled, settings)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
+from shipped_models import compiled_shipped
 
 import models_store.library
 from models_store.library.shipped import list_classes, list_shipped, load_shipped, thumbnail_png
@@ -37,14 +38,9 @@ def model_of(name: str) -> ProceduralModel:
     return load_shipped(name)
 
 
-@cache
-def compiled_model(name: str) -> CompiledModel:
-    return compile_model(model_of(name))
-
-
 def variations(name: str) -> np.ndarray:
     """Vertices (200, V, 3) of random variations."""
-    compiled = compiled_model(name)
+    compiled = compiled_shipped(name)
     return compiled.surface_points(compiled.random_values(np.random.default_rng(20), 200))
 
 
@@ -92,7 +88,7 @@ def test_a_model_says_what_its_lengths_are(name: str) -> None:
     model = model_of(name)
     assert model.unit_m is not None
     assert any(parameter.kind == "length" for parameter in model.parameters)
-    compiled = compiled_model(name)
+    compiled = compiled_shipped(name)
     size_m = np.ptp(compiled.instance(compiled.base_values()).vertices, axis=0).max() * model.unit_m
     low, high = SIZES_M.get(model.class_name, (0.1, 3.0))
     assert low < size_m < high
@@ -108,7 +104,7 @@ def test_nothing_is_wrong_with_a_model(name: str) -> None:
 
 @every_model
 def test_without_parameters_the_operations_give_the_base_model(name: str) -> None:
-    model, compiled = model_of(name), compiled_model(name)
+    model, compiled = model_of(name), compiled_shipped(name)
     bare = ProceduralModel(model.name, model.class_name, model.operations, (), model.description, model.closed)
     present = np.append(compiled.parts_present(compiled.base_values()[None])[0], True)[compiled.surface_parts()]
     np.testing.assert_allclose(base_points(compile_model(bare))[present], base_points(compiled)[present], atol=1e-12)
@@ -126,7 +122,7 @@ def test_parameters_are_plainly_named(name: str) -> None:
 
 @every_model
 def test_a_model_is_cheap(name: str) -> None:
-    assert len(compiled_model(name).control_vertex_ids) <= MAX_CONTROL_VERTICES
+    assert len(compiled_shipped(name).control_vertex_ids) <= MAX_CONTROL_VERTICES
 
 
 @every_model
@@ -144,7 +140,7 @@ def test_the_thumbnail_is_a_picture_of_its_own(name: str) -> None:
 
 
 def instance_points(name: str, **values: float) -> np.ndarray:
-    compiled = compiled_model(name)
+    compiled = compiled_shipped(name)
     return compiled.surface_points(compiled.values_from_mapping(values)[None])[0]
 
 
@@ -174,7 +170,7 @@ def test_the_displayed_sizes_are_those_of_the_mesh() -> None:
 
 def test_the_walls_of_a_bowl_do_not_cross() -> None:
     """At each height above its floor the inner wall of a glass lies within the outer one."""
-    compiled = compiled_model("glass_with_stem")
+    compiled = compiled_shipped("glass_with_stem")
     model = compiled.model
     base = base_points(compiled)
     thicker = instance_points("glass_with_stem", rim_diameter=1.2)

@@ -6,12 +6,13 @@ import simple_shapes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
+from shipped_models import compiled_shipped
 
+from models_store.library.shipped import list_shipped
 from shapewright.classification.readings import plain_reading
 from shapewright.distances.surface import uniform_points
 from shapewright.mesh import PointCloud, TriangleMesh
 from shapewright.mesh.surroundings import is_debris, is_ground
-from shapewright.modeling import compile_model
 
 TURN_AND_SIZE = {"turn_seed": st.integers(0, 10**6), "size": st.sampled_from([1e-4, 1.0, 3e3])}
 
@@ -89,9 +90,9 @@ def test_points_at_one_place_are_no_debris() -> None:
     assert not is_debris(np.ones((50, 3)), 0.0).any()
 
 
-def test_no_shipped_model_has_debris(library_models) -> None:
-    for name, model in library_models.items():
-        compiled = compile_model(model)
+def test_no_shipped_model_has_debris() -> None:
+    for name in list_shipped():
+        compiled = compiled_shipped(name)
         reading = plain_reading(compiled.instance(compiled.base_values()))
         assert not is_debris(reading.points, reading.spacing).any(), name
 
