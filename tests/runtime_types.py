@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any, Final, get_args, get_type_hints
 
 from beartype import BeartypeConf, beartype
-from jaxtyping import AbstractArray, jaxtyped
+from jaxtyping import AbstractArray, TypeCheckError, jaxtyped
 
-check = beartype(conf=BeartypeConf(is_pep484_tower=True))
+check = beartype(conf=BeartypeConf(is_pep484_tower=True, violation_type=TypeCheckError))
 
 UNCHECKED: Final = frozenset(
     f"shapewright.modeling.{name}" for name in ("control_mesh", "elements", "fields", "program", "subdivision")
