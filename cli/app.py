@@ -1,5 +1,6 @@
 """The `shapewright` command: one file a verb, heavy imports only inside the verbs."""
 
+import os
 import sys
 from collections.abc import Sequence
 from typing import Any, NoReturn
@@ -102,4 +103,6 @@ for verb in (
 
 def main() -> None:
     """Entry point of the installed command."""
+    # OpenMP's threads spin where they wait for the next kernel, and take the processor from what runs between them.
+    os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     app()

@@ -107,16 +107,15 @@ def is_ground(points: Float[np.ndarray, "N 3"]) -> Bool[np.ndarray, " N"] | None
     if not usable.any():
         return None
     normals = normals[usable] / lengths[usable][:, None]
-    heights = asked @ normals.T - np.einsum("nk,nk->n", asked[first[usable]], normals)
-    on = np.abs(heights) <= flat
-    shares = on.mean(axis=0)
-    above, below = (heights > flat).sum(axis=0), (heights < -flat).sum(axis=0)
+    heights = normals @ asked.T - np.einsum("nk,nk->n", asked[first[usable]], normals)[:, None]
+    above, below = (np.count_nonzero(side, axis=1) for side in (heights > flat, heights < -flat))
+    shares = 1.0 - (above + below) / len(asked)
     rest = np.maximum(above + below, 1)
     shares[(np.maximum(above, below) < _ONE_SIDE * rest) | (shares > _MOST_GROUND)] = 0.0
     best = int(np.argmax(shares))
     if shares[best] < _LEAST_GROUND:
         return None
-    inside = asked[on[:, best]]
+    inside = asked[np.abs(heights[best]) <= flat]
     middle = inside.mean(axis=0)
     axes = np.linalg.svd(inside - middle, full_matrices=False)[2]
     offsets = (points - middle) @ axes.T
