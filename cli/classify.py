@@ -162,13 +162,21 @@ def _print(results: list[dict[str, Any]], skipped: dict[str, MeshFileError]) -> 
     from rich.markup import escape
     from rich.table import Column, Table
 
-    table = Table(Column("file", overflow="fold"), "answer", "known", "class", "probability", "next")
+    table = Table(
+        Column("file", overflow="fold"),
+        Column("answer", no_wrap=True),
+        Column("known", no_wrap=True),
+        Column("probability", no_wrap=True),
+        Column("next", overflow="fold"),
+    )
     for result in results:
         first, *others = result["probabilities"]
         following = f"{others[0]['class_name']} {others[0]['probability']:.1%}" if others else ""
         known = "" if result["known"] is None else f"{result['known']:.1%}"
-        probability = f"{first['probability']:.1%}"
-        table.add_row(escape(result["file"]), result["answer"], known, first["class_name"], probability, following)
+        likeliest = f"{first['probability']:.1%}"
+        if result["answer"] != first["class_name"]:
+            likeliest = f"{first['class_name']} {likeliest}"
+        table.add_row(escape(result["file"]), result["answer"], known, likeliest, following)
     stdout().print(table)
     for result in results:
         if result["answer"] != result["class_name"]:
