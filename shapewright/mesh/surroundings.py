@@ -18,6 +18,11 @@ _CELLS: Final = 32
 """Cells of the grid along the diagonal of the bulk: what is two cells apart is not connected."""
 _SPACINGS: Final = 2.5
 """A cell is no smaller than so many distances between neighboring points."""
+_SPECK_CELLS: Final = 56
+"""The same as the cells, for specks: they may float closer to the object."""
+_SPECK_SPACINGS: Final = 2.0
+_SPECK_EXTENT: Final = 1.5
+"""Extent of a speck, in its cells, at most."""
 _FAR: Final = 2**16
 """Cells beyond the bulk at which all that is farther away counts as if it were there; more would overflow the keys."""
 _LARGEST_SHARE: Final = 0.015
@@ -51,30 +56,36 @@ def is_debris(points: Float[np.ndarray, "N 3"], spacing: float) -> Bool[np.ndarr
         spacing: typical distance of a point from its neighbors on the surface.
     """
     low, high = np.quantile(points, _BULK, axis=0)
-    cell = max(float(np.linalg.norm(high - low)) / _CELLS, _SPACINGS * spacing)
-    nothing = np.zeros(len(points), dtype=bool)
-    if not cell > 0:
-        return nothing
+    diagonal = float(np.linalg.norm(high - low))
+    debris = np.zeros(len(points), dtype=bool)
+    if not diagonal > 0:
+        return debris
+    piece, extents = _pieces(points, low, high, max(diagonal / _CELLS, _SPACINGS * spacing))
+    sizes = np.bincount(piece)
+    largest = int(np.argmax(sizes))
+    small = (sizes < _LARGEST_SHARE * len(points)) | (extents < _LARGEST_SIZE * extents[largest])
+    small[largest] = False
+    debris |= small[piece]
+    piece, extents = _pieces(points, low, high, max(diagonal / _SPECK_CELLS, _SPECK_SPACINGS * spacing))
+    speck = (extents <= _SPECK_EXTENT) & (np.bincount(piece) < _LARGEST_SHARE * len(points))
+    debris |= speck[piece]
+    return debris if debris.sum() <= _MOST * len(points) else np.zeros_like(debris)
+
+
+def _pieces(
+    points: Float[np.ndarray, "N 3"], low: Float[np.ndarray, " 3"], high: Float[np.ndarray, " 3"], cell: float
+) -> tuple[Int[np.ndarray, " N"], Float[np.ndarray, " P"]]:
+    """Return the piece of each point, and how far each piece extends, in cells; pieces are two cells apart."""
     far = _FAR * cell
     origin = np.maximum(points.min(axis=0), low - far)
     cells, of_point = _cells(np.floor((np.clip(points, origin, high + far) - origin) / cell).astype(np.int64))
     pairs = cKDTree(cells).query_pairs(1.8, output_type="ndarray")  # cells that touch, at a corner at least
     links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(cells), len(cells)))
     count, piece_of_cell = connected_components(links, directed=False)
-    if count == 1:
-        return nothing
-    piece = piece_of_cell[of_point]
-    sizes = np.bincount(piece)
     lows, highs = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
     np.minimum.at(lows, piece_of_cell, cells)
     np.maximum.at(highs, piece_of_cell, cells)
-    extents = np.linalg.norm(highs - lows, axis=1)
-    largest = int(np.argmax(sizes))
-    small = (sizes < _LARGEST_SHARE * len(points)) | (extents < _LARGEST_SIZE * extents[largest])
-    small[largest] = False
-    if not small.any() or sizes[small].sum() > _MOST * len(points):
-        return nothing
-    return np.asarray(small[piece])
+    return piece_of_cell[of_point], np.linalg.norm(highs - lows, axis=1)
 
 
 def _cells(places: Int[np.ndarray, "N 3"]) -> tuple[Int[np.ndarray, "C 3"], Int[np.ndarray, " N"]]:

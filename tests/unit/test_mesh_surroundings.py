@@ -57,6 +57,15 @@ def test_clumps_and_specks_beside_a_cloud_are_debris(turn_seed: int, size: float
     np.testing.assert_array_equal(is_debris(points, size * (4 * np.pi / 3000) ** 0.5), expected)
 
 
+@given(**TURN_AND_SIZE)
+@settings(max_examples=8)
+def test_specks_are_debris_nearer_to_an_object_than_clumps(turn_seed: int, size: float) -> None:
+    specks = 1.22 * np.array([[1.0, 0, 0], [0, 0.6, 0.8], [-0.8, 0, -0.6]])
+    points = moved(np.concatenate([ball(20_000, 1.0, (0, 0, 0)), specks]), turn_seed, size)
+    expected = np.arange(len(points)) >= 20_000
+    np.testing.assert_array_equal(is_debris(points, size * (4 * np.pi / 20_000) ** 0.5), expected)
+
+
 @pytest.mark.parametrize("shape", [simple_shapes.goblet(), simple_shapes.stool()])
 def test_clumps_beside_a_mesh_are_debris(shape: TriangleMesh) -> None:
     clumps = [simple_shapes.box((0.05, 0.05, 0.05), (2.0 * x, 0.3, 0)) for x in (-1, 1)]
