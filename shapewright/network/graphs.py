@@ -1,6 +1,8 @@
 """Networks as ONNX graphs, written node by node: no exporter, the same bytes each time."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import takewhile
 from typing import Any
 
 import numpy as np
@@ -8,6 +10,7 @@ import onnx
 from jaxtyping import Float
 from onnx import TensorProto, helper, numpy_helper
 
+from shapewright.errors import ClassifierError
 from shapewright.network.ports import FEATURES, IMAGES, OPEN_PROBABILITIES, PROBABILITIES
 from shapewright.network.steps import (
     PICTURES,
@@ -152,6 +155,55 @@ def classifier_graph(
     helper.set_model_props(model, metadata)
     onnx.checker.check_model(model)
     return model
+
+
+@dataclass(frozen=True, eq=False)
+class ClassifierParts:
+    """What :func:`classifier_graph` put together.
+
+    Args:
+        features: the backbone's graph.
+        layers: weight and bias of each layer of the head.
+        class_count: number of classes.
+        temperature: of the class values.
+    """
+
+    features: bytes
+    layers: tuple[tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, " _"]], ...]
+    class_count: int
+    temperature: float
+
+
+def classifier_parts(classifier: bytes) -> ClassifierParts:
+    """Take a classifier's graph apart again: the inverse of :func:`classifier_graph`.
+
+    Layers are found by their place in the graph, as files of earlier versions have other names for them.
+
+    Raises:
+        ClassifierError: the graph is of another kind.
+    """
+    try:
+        model = onnx.load_model_from_string(classifier)
+        nodes = list(model.graph.node)
+        constants = {one.name: one for one in model.graph.initializer}
+        place = next(number for number, node in enumerate(nodes, start=1) if FEATURES in node.output)
+        layers = tuple(
+            (numpy_helper.to_array(constants[node.input[1]]), numpy_helper.to_array(constants[node.input[2]]))
+            for node in takewhile(lambda node: node.op_type in ("Gemm", "Relu"), nodes[place:])
+            if node.op_type == "Gemm"
+        )
+        read = {name for node in nodes[:place] for name in node.input}
+        features = features_model(
+            nodes[:place], [one for one in model.graph.initializer if one.name in read], layers[0][0].shape[1]
+        )
+        return ClassifierParts(
+            features=features.SerializeToString(deterministic=True),
+            layers=layers,
+            class_count=int(numpy_helper.to_array(constants["class_count"])[0]),
+            temperature=float(numpy_helper.to_array(constants["temperature"])),
+        )
+    except (StopIteration, KeyError, IndexError, ValueError) as error:
+        raise ClassifierError(f"the graph cannot be taken apart: {error!r}") from error
 
 
 def constant(array: np.ndarray | np.number[Any], name: str) -> Any:

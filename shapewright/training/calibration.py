@@ -38,7 +38,7 @@ _FAMILIAR: Final = 3
 accepted as of the former (91 and 92 %), more than of the latter (75 %)."""
 _VIEWS: Final = 4
 _BINS: Final = 15
-_USUAL: Final = 0.9
+USUAL: Final = 0.9
 """Share of the variations whose distances count as usual."""
 
 
@@ -161,7 +161,7 @@ def _usual_distances(near: Float[np.ndarray, "K C"], labels: Int[np.ndarray, " K
     """Return the quantile of the distances to the own class, of each class; of all together where one was not tried."""
     own = near[np.arange(len(labels)), labels]
     return tuple(
-        float(np.quantile(own[labels == number] if (labels == number).any() else own, _USUAL))
+        float(np.quantile(own[labels == number] if (labels == number).any() else own, USUAL))
         for number in range(near.shape[1])
     )
 

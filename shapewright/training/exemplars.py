@@ -1,10 +1,13 @@
 """Exemplars of what a classifier learned from."""
 
+from dataclasses import replace
+
 import numpy as np
 from jaxtyping import Float, Float32, Int
 
 from shapewright.classification.exemplars import Exemplars
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_distances
+from shapewright.training.calibration import USUAL
 from shapewright.training.dataset import Plan, evenly
 from shapewright.training.settings import TrainingSettings
 
@@ -48,6 +51,37 @@ def representatives(exemplars: Exemplars, per_class: int) -> Exemplars:
             rows = np.flatnonzero(exemplars.models == model)
             kept.append(rows[np.sort(central_rows(exemplars.descriptors[rows], max(count, 1)))])
     return exemplars.taken(np.concatenate(kept))
+
+
+def joined_exemplars(base: Exemplars, new: Exemplars) -> Exemplars:
+    """Return the exemplars of both; the classes and models of ``new`` come after those of ``base``.
+
+    Both have to be of one seed and one number of subdivision steps.
+    """
+    return replace(
+        base,
+        class_names=(*base.class_names, *new.class_names),
+        digests=(*base.digests, *new.digests),
+        classes=np.concatenate([base.classes, new.classes + len(base.class_names)]),
+        models=np.concatenate([base.models, new.models + len(base.digests)]),
+        numbers=np.concatenate([base.numbers, new.numbers]),
+        descriptors=np.concatenate([base.descriptors, new.descriptors]),
+    )
+
+
+def usual_distances_of(exemplars: Exemplars) -> list[float]:
+    """Return the distance of each class within which nine of ten of its exemplars lie of another exemplar of it.
+
+    An exemplar is compared with those of other models of its class, if there are any. So the training measures the
+    distances that are usual, but on variations of models that it has left out.
+    """
+    own = np.empty(len(exemplars))
+    for row in range(len(exemplars)):
+        distances = exemplars.distances(PanoramaDescriptor(exemplars.descriptors[row]))
+        distances[row] = np.inf  # this is itself
+        nearest, _ = exemplars.nearest(distances, without_model=int(exemplars.models[row]))
+        own[row] = nearest[exemplars.classes[row]]
+    return [float(np.quantile(own[exemplars.classes == number], USUAL)) for number in range(len(exemplars.class_names))]
 
 
 def central_rows(descriptors: Float32[np.ndarray, "M D"], count: int) -> Int[np.ndarray, " K"]:

@@ -46,10 +46,14 @@ class Head:
 
     def values(self, features: Float[np.ndarray, "N D"]) -> Float[np.ndarray, "N K"]:
         """Class values before the temperature."""
+        return self.layers[-1](self.hidden(features))
+
+    def hidden(self, features: Float[np.ndarray, "N D"]) -> Float[np.ndarray, "N H"]:
+        """Values that the last layer reads: the features themselves if it is the only one."""
         values = features.astype(np.float32)
         for layer in self.layers[:-1]:
             values = np.maximum(layer(values), 0.0)
-        return self.layers[-1](values)
+        return values
 
     def probabilities(self, features: Float[np.ndarray, "N D"]) -> Float[np.ndarray, "N C"]:
         """Calibrated probabilities of the classes, given that it is one of them; as the exported graph gives them."""

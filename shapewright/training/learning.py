@@ -2,13 +2,17 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from shapewright.classification.classifier import Classifier
 from shapewright.classification.exemplars import Exemplars
+from shapewright.classification.file_format import exemplars_file
+from shapewright.errors import ClassifierError
 from shapewright.estimation.generator import InstanceGenerator
-from shapewright.network.backbone import load_backbone
+from shapewright.network.backbone import Backbone, load_backbone
 from shapewright.network.features import FeatureExtractor
 from shapewright.progress import NULL_PROGRESS, PartialProgress, Progress
 from shapewright.training.array_store import ArrayStore, MemoryStore
@@ -44,6 +48,39 @@ class TrainedClassifier:
     metrics: dict[str, Any]
     metadata: dict[str, Any]
 
+    @classmethod
+    def read(cls, onnx: bytes, exemplars: Exemplars | None, *, where: str | None = None) -> "TrainedClassifier":
+        """Return what an earlier training handed over, from its files.
+
+        Args:
+            onnx: content of the classifier's file.
+            exemplars: that go with it.
+            where: the name of the file, for errors.
+
+        Raises:
+            ClassifierError: the file is damaged or not one of ours; exemplars of another classifier.
+        """
+        try:
+            loaded = Classifier(onnx, exemplars=exemplars, threads=1)
+        except ClassifierError as error:
+            raise ClassifierError(error.message, where=error.where or where) from error
+        return cls(onnx, exemplars, loaded.class_names, loaded.metrics, loaded.metadata)
+
+    @classmethod
+    def load(cls, path: str | Path) -> "TrainedClassifier":
+        """Return what an earlier training handed over, from its file and the exemplars that lie beside it.
+
+        Raises:
+            ClassifierError: as :meth:`read`, or a file is missing.
+        """
+        path = Path(path)
+        try:
+            onnx = path.read_bytes()
+        except OSError as error:
+            raise ClassifierError(f"cannot be read: {error.strerror}", where=path.name) from error
+        beside = exemplars_file(path)
+        return cls.read(onnx, Exemplars.load(beside) if beside.is_file() else None, where=path.name)
+
 
 def train_classifier(
     classes: Mapping[str, Sequence[InstanceGenerator]],
@@ -76,16 +113,28 @@ def train_classifier(
 
 
 def draw_and_describe(
-    plan: Plan, settings: TrainingSettings, store: ArrayStore, progress: Progress = NULL_PROGRESS
+    plan: Plan,
+    settings: TrainingSettings,
+    store: ArrayStore,
+    progress: Progress = NULL_PROGRESS,
+    *,
+    backbone: Backbone | None = None,
 ) -> None:
     """Fill the store with what a plan needs and the store lacks, chunk by chunk.
+
+    Args:
+        plan: what is needed.
+        settings: how it is drawn.
+        store: is filled.
+        progress: hears of every block of variations; may cancel.
+        backbone: what describes pictures; by default the one that the settings name.
 
     Raises:
         RenderingError: no headless OpenGL.
         Cancelled: by ``progress``; finished chunks stay in the store.
     """
     progress.report(0.0, "loading the backbone")
-    backbone = load_backbone(settings.backbone)
+    backbone = load_backbone(settings.backbone) if backbone is None else backbone
     missing = [
         (chunk, described)
         for chunk, described in plan.chunks

@@ -1,7 +1,7 @@
 """How a classifier is trained."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 from shapewright.classification.look import Look
@@ -139,26 +139,39 @@ class TrainingSettings:
         Raises:
             ClassifierError: a name that is no setting, a value of a wrong type or that makes no sense.
         """
-        known = dict(values)
-        for name in known:
-            if name not in cls.__dataclass_fields__:
-                raise ClassifierError("no such setting", where=name)
-        for name, value in known.items():
-            default = cls.__dataclass_fields__[name].default
-            numbers = (int, float) if isinstance(default, float) else int
-            if isinstance(default, tuple):
-                kind = str if name == "breaks" else (int, float)
-                fine = isinstance(value, (list, tuple)) and all(isinstance(part, kind) for part in value)
-            elif isinstance(default, bool):
-                fine = isinstance(value, bool)
-            elif isinstance(default, str):
-                fine = isinstance(value, str)
-            else:
-                fine = isinstance(value, numbers) and not isinstance(value, bool)
-            if not fine:
-                raise ClassifierError(f"is {value!r}, a value like {default!r} is expected", where=name)
+        known = checked_values(cls, values)
         if "scale_range" in known:
             known["scale_range"] = tuple(float(end) for end in known["scale_range"])
         if "breaks" in known:
             known["breaks"] = tuple(known["breaks"])
         return cls(**known)
+
+
+def checked_values(settings: type, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return JSON values, each held against the type of a setting's default.
+
+    Args:
+        settings: a dataclass whose fields all have defaults.
+        values: by the names of fields.
+
+    Raises:
+        ClassifierError: a name that is no setting, or a value of a wrong type.
+    """
+    defaults = {field.name: field.default for field in fields(settings)}
+    for name, value in values.items():
+        if name not in defaults:
+            raise ClassifierError("no such setting", where=name)
+        default = defaults[name]
+        numbers = (int, float) if isinstance(default, float) else int
+        if isinstance(default, tuple):
+            kind = str if name == "breaks" else (int, float)
+            fine = isinstance(value, (list, tuple)) and all(isinstance(part, kind) for part in value)
+        elif isinstance(default, bool):
+            fine = isinstance(value, bool)
+        elif isinstance(default, str):
+            fine = isinstance(value, str)
+        else:
+            fine = isinstance(value, numbers) and not isinstance(value, bool)
+        if not fine:
+            raise ClassifierError(f"is {value!r}, a value like {default!r} is expected", where=name)
+    return dict(values)
