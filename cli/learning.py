@@ -4,9 +4,11 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Final
 
+from cli.console import shown_progress
 from cli.evaluation_options import cache_folder
+from cli.sources import load_negatives, load_shipped_by_digest
 from shapewright.progress import Progress
 from shapewright.whole_file import write_whole
 
@@ -14,6 +16,9 @@ if TYPE_CHECKING:
     from shapewright.classification import Classifier
     from shapewright.modeling import CompiledModel
     from shapewright.training import TrainedClassifier, TrainingSettings
+
+READY: Final = "ready"
+"""What the classifier that ships is called where a file may be named."""
 
 Classes = Mapping[str, "Sequence[CompiledModel]"]
 
@@ -30,6 +35,52 @@ def learn(
 
     store = FolderStore(cache_folder(cache, "learning"))
     return train_classifier(classes, settings, progress, negatives=negatives, store=store)
+
+
+def extend(base: str, classes: Classes, settings: Mapping[str, Any], cache: Path | None = None) -> "TrainedClassifier":
+    """Add classes to a classifier, with the features that earlier extensions left in the cache.
+
+    Args:
+        base: a classifier's file, or :data:`READY`.
+        classes: the new classes; models among them that the base has learned from stand for themselves.
+        settings: fields of :class:`shapewright.training.ExtensionSettings` that differ from the default.
+        cache: the user's cache, if not the usual one.
+
+    Raises:
+        ClassifierError: the base is missing or damaged, knows all of the classes already, or has learned from models
+            that are neither shipped nor named.
+    """
+    from shapewright.classification import ready_classifier_file
+    from shapewright.errors import ClassifierError
+    from shapewright.training import ExtensionSettings, FolderStore, TrainedClassifier, extend_classifier
+
+    chosen = ExtensionSettings.from_dict(settings)
+    trained = TrainedClassifier.load(ready_classifier_file() if base == READY else base)
+    names = {model["digest"]: model["name"] for model in trained.metadata["models"]}
+    named = {model.model.digest: model for models in classes.values() for model in models}
+    new = {
+        name: rest for name, models in classes.items() if (rest := [m for m in models if m.model.digest not in names])
+    }
+    if again := [name for name in (new or classes) if name in trained.class_names]:
+        raise ClassifierError(f"knows the class {again[0]!r} already", where=base)
+    known = load_shipped_by_digest(set(names) - set(named))
+    known |= {digest: model for digest, model in named.items() if digest in names}
+    if missing := [name for digest, name in names.items() if digest not in known]:
+        raise ClassifierError(
+            f"has learned from models that do not ship in that version ({', '.join(missing)}); name their files, too",
+            where=base,
+        )
+    store = FolderStore(cache_folder(cache, "learning"))
+    with shown_progress("extending") as progress:
+        return extend_classifier(
+            trained,
+            new,
+            known=list(known.values()),
+            negatives=load_negatives([*trained.class_names, *new]),
+            settings=chosen,
+            progress=progress,
+            store=store,
+        )
 
 
 def save_classifier(trained: "TrainedClassifier", output: Path) -> None:

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -86,6 +87,13 @@ def load_negatives(class_names: Iterable[str]) -> "list[CompiledModel]":
     """Load the shipped models of the further objects that are none of these classes."""
     classes, known = list_classes(), set(class_names)
     return [load_compiled(name) for other in list_further_classes() if other not in known for name in classes[other]]
+
+
+def load_shipped_by_digest(digests: Iterable[str]) -> "dict[str, CompiledModel]":
+    """Load the shipped models that have these digests; a digest that no shipped model has is left out."""
+    wanted = set(digests)
+    found = [name for name, document in list_shipped().items() if sha256(document.read_bytes()).hexdigest() in wanted]
+    return by_digest([load_all_compiled(found)] if found else [])
 
 
 def chosen_classifier(named: Path | None) -> Path:
