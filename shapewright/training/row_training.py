@@ -16,6 +16,8 @@ _LEAST_STEPS: Final = 8
 """Steps in an epoch at least: few pictures make smaller batches."""
 _WARM_UP: Final = 0.1
 """Share of the steps over which the learning rate rises."""
+_USUAL_INPUTS: Final = 1280
+"""Inputs of a last layer for which learning rates are given."""
 _LEAST_DEVIATION: Final = 1e-6
 """Inputs that vary less are constant, as those of a dead hidden value are."""
 
@@ -91,9 +93,10 @@ def learn_rows(
         return whole
 
     batch = min(settings.batch_size, max(1, len(learned) // _LEAST_STEPS))
-    optimizer = torch.optim.AdamW([weight, bias], lr=settings.learning_rate, weight_decay=settings.weight_decay)
+    highest = settings.learning_rate * _USUAL_INPUTS / inputs.shape[1]
+    optimizer = torch.optim.AdamW([weight, bias], lr=highest, weight_decay=settings.weight_decay)
     steps = settings.epochs * -(-len(learned) // batch) + 1
-    rate = torch.optim.lr_scheduler.OneCycleLR(optimizer, settings.learning_rate, total_steps=steps, pct_start=_WARM_UP)
+    rate = torch.optim.lr_scheduler.OneCycleLR(optimizer, highest, total_steps=steps, pct_start=_WARM_UP)
     rng = np.random.default_rng(seed)
     curves: dict[str, list[float]] = {"train_loss": [], "held_out_loss": [], "held_out_accuracy": []}
     best_loss, best_epoch, best = judged()[0], -1, layer()
