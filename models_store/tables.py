@@ -174,7 +174,9 @@ class MeshRow(Base):
 class ClassifierRow(Base):
     """A classifier: asked for with its job, complete once ``onnx_key`` is set. The one that ships has no job.
 
-    ``negative_model_ids`` and ``exemplars_key`` are null in older rows, and where there is no such thing.
+    ``negative_model_ids`` and ``exemplars_key`` are null in older rows, and where there is no such thing. A classifier
+    that extends another has ``base_classifier_id``, and the models and classes of both. The column is no foreign key:
+    the base is not needed once the training has succeeded.
     """
 
     __tablename__ = "classifiers"
@@ -183,6 +185,7 @@ class ClassifierRow(Base):
     id: Mapped[str] = mapped_column(String(32), primary_key=True)
     job_id: Mapped[str | None] = mapped_column(ForeignKey(JobRow.id), unique=True)
     name: Mapped[str | None] = mapped_column(Text)
+    base_classifier_id: Mapped[str | None] = mapped_column(String(32))
     model_ids: Mapped[list[str]]
     negative_model_ids: Mapped[list[str] | None]
     class_names: Mapped[list[str]]

@@ -7,7 +7,7 @@ from typing import Any
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from models_store.catalog.models import get_model
+from models_store.catalog.models import get_model, known_models
 from models_store.catalog.rows import get_row
 from models_store.catalog.shipped import shipped_classifier
 from models_store.errors import NotReadyError, StoreError
@@ -23,6 +23,7 @@ def request_classifier(
     settings: dict[str, Any],
     *,
     negative_model_ids: Sequence[str] = (),
+    base_classifier_id: str | None = None,
     name: str | None = None,
     now: datetime,
     max_attempts: int = 3,
@@ -32,19 +33,36 @@ def request_classifier(
     Args:
         session: a writing session.
         model_ids: the models; several may share a class. Repeated ids count once.
-        settings: fields of :class:`shapewright.training.TrainingSettings` that differ from the default.
-        negative_model_ids: models of things that are of none of the classes. Repeated ids count once.
+        settings: fields of :class:`shapewright.training.TrainingSettings` that differ from the default, or of
+            :class:`shapewright.training.ExtensionSettings` if a base is given.
+        negative_model_ids: models of things that are of none of the classes. Repeated ids count once. Without any, a
+            classifier that is extended gives those that it was trained with.
+        base_classifier_id: the classifier that is extended by the classes of the models.
         name: a name for people.
         now: the time, with a zone.
         max_attempts: of the job.
 
     Raises:
-        NotFoundError: a model is not there.
+        NotFoundError: a model or the base is not there.
+        NotReadyError: the base is not trained.
         StoreError: the models are of fewer than two classes, so there is nothing to tell apart; a negative model is
-            of one of them.
+            of one of them; the base knows one of the classes, or models of the base are not there.
     """
     unique_ids = list(dict.fromkeys(model_ids))
-    class_names = sorted({get_model(session, model_id).class_name for model_id in unique_ids})
+    classes = {model_id: get_model(session, model_id).class_name for model_id in unique_ids}
+    class_names = sorted(set(classes.values()))
+    if base_classifier_id is not None:
+        base = _base(session, base_classifier_id)
+        for model_id, class_name in classes.items():
+            if class_name in base.class_names:
+                raise StoreError(
+                    f"the base classifier knows the class {class_name!r} already",
+                    where=f"model_ids[{list(model_ids).index(model_id)}]",
+                )
+        negative_model_ids = negative_model_ids or [
+            row.id for row in known_models(session, base.negative_model_ids or []) if row.class_name not in class_names
+        ]
+        class_names, unique_ids = [*base.class_names, *class_names], [*base.model_ids, *unique_ids]
     if len(class_names) < 2:
         raise StoreError("a classifier needs models of at least two classes", where="model_ids")
     negative_ids = list(dict.fromkeys(negative_model_ids))
@@ -63,6 +81,7 @@ def request_classifier(
         id=identifier,
         job=job,
         name=None if name is None else storable(name, limit=200),
+        base_classifier_id=base_classifier_id,
         model_ids=unique_ids,
         negative_model_ids=negative_ids,
         class_names=class_names,
@@ -71,6 +90,22 @@ def request_classifier(
     )
     session.add(row)
     session.flush()
+    return row
+
+
+def _base(session: Session, identifier: str) -> ClassifierRow:
+    """Return a classifier that can be extended."""
+    row = get_classifier(session, identifier)
+    where = "base_classifier_id"
+    if row.onnx_key is None:
+        raise NotReadyError(f"this classifier is not trained (its job is {row.state.value})", where=where)
+    there = {model.id for model in known_models(session, row.model_ids)}
+    if missing := [model_id for model_id in row.model_ids if model_id not in there]:
+        raise StoreError(
+            f"{len(missing)} of the models that this classifier has learned from are not here, "
+            f"for example {missing[0]!r}; upload them to extend it",
+            where=where,
+        )
     return row
 
 

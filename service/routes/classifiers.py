@@ -21,11 +21,11 @@ router = APIRouter(prefix="/v1/classifiers", tags=["classifiers"])
     status_code=202,
     response_model=AcceptedOut,
     dependencies=[Depends(require_json)],
-    responses=problems(413, 415, 422, 503, 507),
+    responses=problems(409, 413, 415, 422, 503, 507),
 )
 def create_classifier(services: ServicesDep, response: Response, after: BackgroundTasks, body: ClassifierIn) -> Any:
-    """Train a classifier on variations of procedural models."""
-    settings = body.settings.checked()
+    """Train a classifier on variations of procedural models, or add classes to one that is trained."""
+    settings = body.settings.checked(extending=body.base_classifier_id is not None)
     try:
         with services.database.writing() as session:
             row = catalog.request_classifier(
@@ -33,11 +33,14 @@ def create_classifier(services: ServicesDep, response: Response, after: Backgrou
                 body.model_ids,
                 settings,
                 negative_model_ids=body.negative_model_ids,
+                base_classifier_id=body.base_classifier_id,
                 name=body.name,
                 now=now(),
                 max_attempts=services.settings.max_attempts,
             )
     except NotFoundError as error:
+        if error.what == "classifier":
+            raise reference_error(error, "base_classifier_id") from None
         name = "model_ids" if error.identifier in body.model_ids else "negative_model_ids"
         index = getattr(body, name).index(error.identifier)
         raise reference_error(error, f"{name}[{index}]") from None

@@ -18,6 +18,11 @@ class TrainingSettingsIn(InBody):
         default=None, description="Random variations of each class."
     )
     images_per_variation: Annotated[int, Field(ge=1, le=1000)] | None = None
+    rehearsed: Annotated[int, Field(ge=2, le=100_000)] | None = Field(
+        default=None,
+        description="Variations of each class that the base classifier knows which are drawn again; only with "
+        "`base_classifier_id`.",
+    )
     image_size: Annotated[int, Field(ge=32, le=1024)] | None = Field(
         default=None,
         description="Pixels a side; left out, what the backbone was trained for. EfficientNet takes multiples of 32, "
@@ -74,17 +79,21 @@ class TrainingSettingsIn(InBody):
         | None
     ) = Field(default=None, description="Ways to break them.")
 
-    def checked(self) -> dict[str, Any]:
+    def checked(self, *, extending: bool = False) -> dict[str, Any]:
         """The settings that were given, held against the library's own rules.
+
+        Args:
+            extending: whether they are of an extension.
 
         Raises:
             ClassifierError: they make no sense together; ``where`` is the field of the body.
         """
+        from shapewright.training.extension_settings import ExtensionSettings
         from shapewright.training.settings import TrainingSettings  # when first needed: a quick start
 
         given = self.model_dump(exclude_none=True)
         try:
-            TrainingSettings.from_dict(given)
+            (ExtensionSettings if extending else TrainingSettings).from_dict(given)
         except ClassifierError as error:
             raise ClassifierError(error.message, where=f"settings.{error.where}") from None
         return given
@@ -95,12 +104,19 @@ class ClassifierIn(InBody):
 
     name: Annotated[str, Field(min_length=1, max_length=200)] | None = None
     model_ids: Annotated[list[Identifier], Field(min_length=1, max_length=10_000)] = Field(
-        description="Models to learn from; those with one `class_name` make one class."
+        description="Models to learn from; those with one `class_name` make one class. With `base_classifier_id`, "
+        "models of the classes to add."
+    )
+    base_classifier_id: Identifier | None = Field(
+        default=None,
+        description="Add the classes to this classifier, which takes under a minute: the classes that it knows stay as "
+        "they are. Of `settings` an extension takes `variations`, `images_per_variation`, `rehearsed`, `negatives`, "
+        "`held_out` and those of the learning itself; the others are those of the base.",
     )
     negative_model_ids: Annotated[list[Identifier], Field(max_length=10_000)] = Field(
         default_factory=list,
         description="Models of things that are of none of the classes, to learn what is unknown; random assemblies "
-        "are learned from in any case.",
+        "are learned from in any case. Left empty with `base_classifier_id`, those that the base was trained with.",
     )
     settings: TrainingSettingsIn = Field(default_factory=TrainingSettingsIn)
 
@@ -121,6 +137,7 @@ class ClassifierOut(OutBody):
     id: str
     name: str | None
     state: JobState
+    base_classifier_id: str | None = Field(description="The classifier that this one extends.")
     class_names: list[str]
     model_ids: list[str]
     negative_model_ids: list[str]
@@ -145,6 +162,7 @@ class ClassifierOut(OutBody):
             id=row.id,
             name=row.name,
             state=row.state,
+            base_classifier_id=row.base_classifier_id,
             class_names=row.class_names,
             model_ids=row.model_ids,
             negative_model_ids=row.negative_model_ids or [],

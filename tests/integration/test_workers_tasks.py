@@ -28,7 +28,7 @@ from shapewright.classification.exemplars import Exemplars
 from shapewright.estimation import EstimationSettings, PanoramaBank, estimate
 from shapewright.mesh.file import parse_mesh
 from shapewright.modeling import ProceduralModel, Recorder, compile_model
-from shapewright.training import TrainingSettings
+from shapewright.training import TrainedClassifier, TrainingSettings
 from shapewright.training.broken.breaking import is_broken
 from workers.context import JobContext, WorkerProgress
 from workers.runner import Runner
@@ -220,7 +220,7 @@ def test_a_classifier_is_trained_and_tells_a_brick_from_a_rod(site: Site) -> Non
     assert trained.class_names == ["brick", "rod"]
     assert trained.metrics
     assert len(site.artifacts.get(trained.onnx_key)) > 1_000_000
-    exemplars = Exemplars.load(site.artifacts.local_copy(trained.exemplars_key, Path(site.settings.data_dir)))
+    exemplars = exemplars_of(site, trained)
     whole = [number for number in range(TRAINING["variations"]) if not is_broken(number, TrainingSettings().broken)]
     assert (exemplars.class_names, exemplars.numbers.tolist()) == (("brick", "rod"), 2 * whole)
     assert keys_of(site, "features", slab())
@@ -335,6 +335,27 @@ def test_a_cancelled_training_goes_on_where_it_was(site: Site, monkeypatch: pyte
     assert stopped.arrays
     assert not set(stopped.arrays) & set(rest.arrays)
     assert rod().digest[:32] in rest.models("features")
+
+
+def test_a_classifier_is_extended_with_what_the_catalog_has(site: Site) -> None:
+    base = queue_training(site, [brick(), rod()])
+    succeed(site, base.job_id, site.artifacts)
+    extending = {"variations": 8, "images_per_variation": 4, "rehearsed": 4, "negatives": 4}
+    added = site.add_model(slab())
+    with site.database.writing() as session:
+        row = catalog.request_classifier(session, [added], extending, base_classifier_id=base.id, now=now())
+    succeed(site, row.job_id, site.artifacts)
+    with site.database.reading() as session:
+        before, after = (catalog.get_classifier(session, one.id) for one in (base, row))
+    assert after.class_names == [*before.class_names, slab().class_name]
+    assert {"new_accuracy", "known_accuracy", "known_accuracy_before"} <= after.metrics.keys()
+    trained = TrainedClassifier.read(site.artifacts.get(after.onnx_key), exemplars_of(site, after))
+    assert trained.class_names == tuple(after.class_names)
+    assert trained.exemplars.digests == (brick().digest, rod().digest, slab().digest)
+
+
+def exemplars_of(site: Site, row: ClassifierRow) -> Exemplars:
+    return Exemplars.load(site.artifacts.local_copy(row.exemplars_key, Path(site.settings.data_dir)))
 
 
 def parts_of(site: Site, job_id: str) -> dict[str, JobState]:

@@ -105,6 +105,35 @@ def test_what_is_of_no_class_is_learned_from_models_of_other_things(service: Liv
         problem(service.client.post(url, json=body), 422, f"negative_model_ids[{index}]")
 
 
+def test_a_trained_classifier_is_extended(service: LiveService) -> None:
+    url = "/v1/classifiers"
+    queued = service.client.post(url, json={"model_ids": two_models(service)}).json()
+    lamp, pole = service.add_model("lamp")["id"], service.add_model("pole")["id"]
+    body = {"model_ids": [lamp], "base_classifier_id": queued["id"], "settings": {"variations": 9, "rehearsed": 3}}
+    problem(service.client.post(url, json=body), 409, "base_classifier_id")
+    base = train(service)
+    body["base_classifier_id"] = base["id"]
+    response = service.client.post(url, json={**body, "negative_model_ids": [pole]})
+    assert response.status_code == 202
+    extended = service.client.get(response.json()["url"]).json()
+    assert extended["base_classifier_id"] == base["id"]
+    assert base["base_classifier_id"] is None
+    assert extended["class_names"] == ["box", "crate", "lamp"]
+    assert extended["model_ids"] == [*base["model_ids"], lamp]
+    assert extended["negative_model_ids"] == [pole]
+    assert extended["settings"] == body["settings"]
+    for wrong, where in (
+        ({"model_ids": [lamp, base["model_ids"][0]]}, "model_ids[1]"),
+        ({"base_classifier_id": "0" * 32}, "base_classifier_id"),
+        ({"negative_model_ids": [base["model_ids"][1]]}, "negative_model_ids[0]"),
+        ({"settings": {"seed": 3}}, "settings.seed"),
+        ({"settings": {"image_size": 224}}, "settings.image_size"),
+        ({"base_classifier_id": None}, "settings.rehearsed"),
+        ({"base_classifier_id": None, "settings": {}}, "model_ids"),
+    ):
+        problem(service.client.post(url, json={**body, **wrong}), 422, where)
+
+
 @pytest.mark.parametrize(
     ("body", "where"),
     [

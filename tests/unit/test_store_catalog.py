@@ -169,6 +169,34 @@ def test_negative_models_are_of_no_learned_class(database: Database, clock: Fake
         catalog.request_classifier(session, models, {}, negative_model_ids=["0" * 64], now=clock.now)
 
 
+def test_an_extension_has_the_models_of_both_and_needs_those_of_its_base(
+    database: Database,  # noqa: F811
+    clock: FakeClock,  # noqa: F811
+) -> None:
+    pipe = replace(rod(), class_name="pipe")
+    models = [add_model(database, clock.now), add_model(database, clock.now, rod())]
+    other, tube = add_model(database, clock.now, pipe), add_model(database, clock.now, replace(pipe, class_name="tube"))
+    with database.writing() as session:
+        base = catalog.request_classifier(session, models, {}, negative_model_ids=[other, tube], now=clock.now)
+    with database.writing() as session, pytest.raises(NotReadyError, match="queued"):
+        catalog.request_classifier(session, [other], {}, base_classifier_id=base.id, now=clock.now)
+    with database.writing() as session:
+        catalog.record_classifier(session, base.id, onnx_key="k", class_names=["rod", "brick"], metrics={}, seconds=1)
+    with database.writing() as session:
+        row = catalog.request_classifier(session, [other], {}, base_classifier_id=base.id, now=clock.now)
+    assert (row.class_names, row.model_ids) == (["rod", "brick", "pipe"], [*models, other])
+    assert row.negative_model_ids == [tube], "as the base, without what is a class now"
+    with database.writing() as session, pytest.raises(StoreError, match="knows the class 'rod'") as caught:
+        catalog.request_classifier(session, [other, models[1]], {}, base_classifier_id=base.id, now=clock.now)
+    assert caught.value.where == "model_ids[1]"
+    with database.writing() as session:
+        session.delete(catalog.get_model(session, models[0]))
+    with database.writing() as session, pytest.raises(StoreError, match="1 of the models") as caught:
+        catalog.request_classifier(session, [other], {}, base_classifier_id=base.id, now=clock.now)
+    assert caught.value.where == "base_classifier_id"
+    assert models[0] in str(caught.value)
+
+
 def test_requests_for_what_is_not_there_leave_nothing_behind(
     database: Database,  # noqa: F811
     clock: FakeClock,  # noqa: F811

@@ -60,6 +60,25 @@ def stored_classifier(context: JobContext, classifier_id: str) -> LoadedClassifi
     return _kept[key]
 
 
+def stored_base(context: JobContext, classifier_id: str) -> "TrainedClassifier":
+    """Load a classifier that is to be extended.
+
+    Raises:
+        NotFoundError: it is not there.
+        ClassifierError: its file is damaged.
+        ArtifactError: its file cannot be read.
+    """
+    from shapewright.classification import Exemplars
+    from shapewright.training import TrainedClassifier
+
+    with context.database.reading() as session:
+        row = catalog.get_classifier(session, classifier_id)
+    exemplars = None
+    if row.exemplars_key is not None:
+        exemplars = Exemplars.load(context.artifacts.local_copy(row.exemplars_key, context.settings.data_dir / "cache"))
+    return TrainedClassifier.read(context.artifacts.get(str(row.onnx_key)), exemplars)
+
+
 def store_classifier(context: JobContext, classifier_id: str, trained: "TrainedClassifier") -> ClassifierKeys:
     """Write the files of a classifier that was trained now.
 

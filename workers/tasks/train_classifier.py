@@ -14,14 +14,22 @@ from workers.stored.classifiers import store_classifier
 
 
 def train_classifier(context: JobContext) -> Outcome:
-    """Train on all models of the classifier's row, grouped by class; what was computed before is read again."""
+    """Train on all models of the classifier's row, grouped by class, or extend its base by the new ones.
+
+    What was computed before is read again.
+    """
+    from shapewright.training.extending import learn_extension
     from shapewright.training.learning import IMAGES_SHARE, learn
 
     classifier_id = str(context.claim.payload["classifier_id"])
     work = learning_plan(context, classifier_id, context.progress)
     store = ArtifactArrays.of(context)
     _draw_and_describe(context, work, store, PartialProgress(context.progress, 0.0, IMAGES_SHARE))
-    trained = learn(work.plan, work.settings, store, PartialProgress(context.progress, IMAGES_SHARE, 1.0))
+    learning = PartialProgress(context.progress, IMAGES_SHARE, 1.0)
+    if work.extension is None:
+        trained = learn(work.plan, work.settings, store, learning)
+    else:
+        trained = learn_extension(work.extension, store, learning)
     keys = store_classifier(context, classifier_id, trained)
     record = partial(
         catalog.record_classifier,

@@ -192,7 +192,7 @@ export interface paths {
         put?: never;
         /**
          * Create Classifier
-         * @description Train a classifier on variations of procedural models.
+         * @description Train a classifier on variations of procedural models, or add classes to one that is trained.
          */
         post: operations["create_classifier"];
         delete?: never;
@@ -996,12 +996,17 @@ export interface components {
             name?: string | null;
             /**
              * Model Ids
-             * @description Models to learn from; those with one `class_name` make one class.
+             * @description Models to learn from; those with one `class_name` make one class. With `base_classifier_id`, models of the classes to add.
              */
             model_ids: string[];
             /**
+             * Base Classifier Id
+             * @description Add the classes to this classifier, which takes under a minute: the classes that it knows stay as they are. Of `settings` an extension takes `variations`, `images_per_variation`, `rehearsed`, `negatives`, `held_out` and those of the learning itself; the others are those of the base.
+             */
+            base_classifier_id?: string | null;
+            /**
              * Negative Model Ids
-             * @description Models of things that are of none of the classes, to learn what is unknown; random assemblies are learned from in any case.
+             * @description Models of things that are of none of the classes, to learn what is unknown; random assemblies are learned from in any case. Left empty with `base_classifier_id`, those that the base was trained with.
              */
             negative_model_ids?: string[];
             settings?: components["schemas"]["TrainingSettingsIn"];
@@ -1016,6 +1021,11 @@ export interface components {
             /** Name */
             name: string | null;
             state: components["schemas"]["JobState"];
+            /**
+             * Base Classifier Id
+             * @description The classifier that this one extends.
+             */
+            base_classifier_id: string | null;
             /** Class Names */
             class_names: string[];
             /** Model Ids */
@@ -2629,6 +2639,11 @@ export interface components {
             /** Images Per Variation */
             images_per_variation?: number | null;
             /**
+             * Rehearsed
+             * @description Variations of each class that the base classifier knows which are drawn again; only with `base_classifier_id`.
+             */
+            rehearsed?: number | null;
+            /**
              * Image Size
              * @description Pixels a side; left out, what the backbone was trained for. EfficientNet takes multiples of 32, Inception 11 more than a multiple of 32 (75, 107, … 299, …).
              */
@@ -3292,6 +3307,15 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["AcceptedOut"];
+                };
+            };
+            /** @description Not in this state. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["ProblemOut"];
                 };
             };
             /** @description The body is too large. */
