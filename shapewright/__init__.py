@@ -15,7 +15,13 @@ if TYPE_CHECKING:
     from shapewright.mesh.file import load_mesh, load_query, parse_mesh
     from shapewright.modeling import CompiledModel, Parameter, ProceduralModel, Recorder, compile_model
     from shapewright.rendering import render_images, render_mesh
-    from shapewright.training import TrainedClassifier, TrainingSettings, train_classifier
+    from shapewright.training import (
+        ExtensionSettings,
+        TrainedClassifier,
+        TrainingSettings,
+        extend_classifier,
+        train_classifier,
+    )
 
 _HOMES = {
     "Cancelled": "errors",
@@ -24,6 +30,7 @@ _HOMES = {
     "CompiledModel": "modeling",
     "Estimation": "estimation",
     "EstimationSettings": "estimation",
+    "ExtensionSettings": "training",
     "Parameter": "modeling",
     "PointCloud": "mesh",
     "ProceduralModel": "modeling",
@@ -36,6 +43,7 @@ _HOMES = {
     "classify": "classification",
     "compile_model": "modeling",
     "estimate": "estimation",
+    "extend_classifier": "training",
     "load_mesh": "mesh.file",
     "load_query": "mesh.file",
     "parse_mesh": "mesh.file",
@@ -51,6 +59,7 @@ __all__ = [
     "CompiledModel",
     "Estimation",
     "EstimationSettings",
+    "ExtensionSettings",
     "Parameter",
     "PointCloud",
     "ProceduralModel",
@@ -63,6 +72,7 @@ __all__ = [
     "classify",
     "compile_model",
     "estimate",
+    "extend_classifier",
     "load_mesh",
     "load_query",
     "parse_mesh",

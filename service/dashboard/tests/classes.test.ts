@@ -1,8 +1,8 @@
 import { expect, it } from "vitest";
 
-import type { Model } from "../src/api/types";
+import type { Classifier, Model } from "../src/api/types";
 import { defaultTarget } from "../src/components/EstimationPanel";
-import { byClass, newestVersions } from "../src/lib/classes";
+import { byClass, classesToAdd, newestVersions } from "../src/lib/classes";
 
 const model = (class_name: string, name: string, created_at = "2026-01-01") =>
   ({ id: `${name} ${created_at}`, class_name, name, created_at }) as Model;
@@ -34,4 +34,11 @@ it("estimates with all models of the class that was found", () => {
   expect(defaultTarget(classes, "chair")).toBe("armchair 2026-01-01");
   expect(defaultTarget(classes, "ship")).toBe("armchair 2026-01-01");
   expect(defaultTarget([], null)).toBeNull();
+});
+
+it("offers the classes that a classifier has not learned", () => {
+  const knowing = (...class_names: string[]) => ({ class_names }) as Classifier;
+  expect(classesToAdd(MODELS, knowing("chair")).map(({ name, models }) => [name, models.length])).toEqual([["table", 2]]);
+  expect(classesToAdd(MODELS, knowing("chair", "table"))).toEqual([]);
+  expect(classesToAdd(MODELS, undefined)).toEqual([]);
 });

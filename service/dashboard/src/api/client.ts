@@ -168,6 +168,26 @@ export function createApi(baseUrl: string, fetcher?: (request: Request) => Promi
       );
     },
 
+    /** Add classes to a trained classifier; models of other things keep unknown what is unknown. */
+    async extendClassifier(input: {
+      base: Classifier;
+      className: string;
+      modelIds: string[];
+      otherModelIds: string[];
+    }): Promise<Accepted> {
+      return body(
+        http.POST("/v1/classifiers", {
+          body: {
+            name: `${input.base.name || "Unnamed"} and ${input.className}`.slice(0, 200),
+            base_classifier_id: input.base.id,
+            model_ids: input.modelIds,
+            negative_model_ids: input.otherModelIds,
+            settings: {},
+          },
+        }),
+      );
+    },
+
     async listClassifications(): Promise<Page<Classification>> {
       return body(http.GET("/v1/classifications", { params: { query: page } }));
     },

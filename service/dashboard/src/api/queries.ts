@@ -161,6 +161,7 @@ function useStarter<Input, Output>(start: (input: Input) => Promise<Output>) {
 }
 
 export const useTrain = () => useStarter(api.trainClassifier);
+export const useExtend = () => useStarter(api.extendClassifier);
 export const useClassify = () => useStarter(api.classify);
 export const useEstimate = () => useStarter(api.estimate);
 /** Index the named meshes, or all there are. */

@@ -1,9 +1,9 @@
 import { useState } from "react";
 
-import { useClassifiers, useModels, useTrain } from "../api/queries";
+import { useClassifiers, useExtend, useModels, useTrain } from "../api/queries";
 import { isTerminal } from "../api/types";
 import { useJob } from "../hooks/useJob";
-import { newestVersions } from "../lib/classes";
+import { classesToAdd, newestVersions } from "../lib/classes";
 import { usableClassifiers } from "../lib/classifiers";
 import { count } from "../lib/format";
 import { JobProgress } from "./JobProgress";
@@ -28,20 +28,41 @@ export function ClassifierPicker({ selectedId, onSelect }: ClassifierPickerProps
   const classifiers = useClassifiers();
   const models = useModels();
   const train = useTrain();
+  const extend = useExtend();
+  const [added, setAdded] = useState<string | null>(null);
   const [effort, setEffort] = useState<Effort>(EFFORTS[0]);
   const [training, setTraining] = useState(false);
 
   const usable = usableClassifiers(classifiers.data?.items);
   const selected = usable.find((classifier) => classifier.id === selectedId);
   const pending = classifiers.data?.items.find((classifier) => !isTerminal(classifier.state));
-  const startedJob = train.data?.job.id ?? null;
+  const startedJob = train.data?.job.id ?? extend.data?.job.id ?? null;
   const live = useJob(pending?.job_id ?? startedJob);
   const showJob = pending !== undefined || live.snapshot.state === "failed";
   const showForm = !pending && (training || (classifiers.isSuccess && usable.length === 0));
   const current = newestVersions(models.data);
   const trainable = new Set(current.map((model) => model.class_name)).size >= 2;
 
+  const addable = classesToAdd(models.data, selected);
+  const chosen = addable.find(({ name }) => name === added) ?? addable[0];
+
+  const add = () => {
+    if (!selected || !chosen) return;
+    const others = addable.filter(({ name }) => name !== chosen.name).flatMap((other) => other.models);
+    train.reset();
+    extend.mutate(
+      {
+        base: selected,
+        className: chosen.name,
+        modelIds: chosen.models.map((model) => model.id),
+        otherModelIds: others.map((model) => model.id),
+      },
+      { onSuccess: () => setTraining(false) },
+    );
+  };
+
   const start = () => {
+    extend.reset();
     train.mutate(
       {
         modelIds: current.map((model) => model.id),
@@ -78,6 +99,27 @@ export function ClassifierPicker({ selectedId, onSelect }: ClassifierPickerProps
         </div>
       )}
       {selected && <LearningCurves key={selected.id} classifier={selected} />}
+      {showForm && selected && chosen && (
+        <div className="well">
+          <div className="field">
+            <label htmlFor="added-class">Add a class to {selected.name || "this classifier"}</label>
+            <div className="field-row">
+              <select id="added-class" value={chosen.name} onChange={(event) => setAdded(event.target.value)}>
+                {addable.map(({ name }) => (
+                  <option key={name} value={name}>
+                    {name}
+                  </option>
+                ))}
+              </select>
+              <button type="button" className="button" onClick={add} disabled={extend.isPending}>
+                {extend.isPending ? "Starting…" : "Add class"}
+              </button>
+            </div>
+          </div>
+          <p className="hint">Takes under a minute; the classes that it knows stay.</p>
+          {extend.error && <Problem error={extend.error} onDismiss={() => extend.reset()} />}
+        </div>
+      )}
       {showForm && (
         <div className="well">
           <p>

@@ -1,5 +1,5 @@
 /** Models by class: a class of objects is the set of models that share its name. */
-import type { Model } from "../api/types";
+import type { Classifier, Model } from "../api/types";
 
 export interface ModelClass {
   name: string;
@@ -29,4 +29,9 @@ export function newestVersions(models: Model[] | undefined): Model[] {
   return byClass(models).flatMap(({ models: members }) =>
     members.filter((model, index) => model.name !== members[index - 1]?.name),
   );
+}
+
+/** The classes that a classifier has not learned: each can be added to it, and the others are unknown to it. */
+export function classesToAdd(models: Model[] | undefined, classifier: Classifier | undefined): ModelClass[] {
+  return classifier ? byClass(newestVersions(models)).filter(({ name }) => !classifier.class_names.includes(name)) : [];
 }
