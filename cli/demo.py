@@ -55,11 +55,12 @@ def demo(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Show the whole path on one mesh: upload, classify, estimate, and look at it in the dashboard.
+    """Show the whole path on one mesh: upload, classify, estimate, learn, and look at it in the dashboard.
 
     Starts the service and a worker, uploads MESH, asks the ready classifier what it is, and the models of its class
-    which parameters rebuild it. Everything goes through the REST service, as it would from another machine. A point
-    cloud is classified only: rebuilding needs faces. Exit status 0 only if every step succeeded.
+    which parameters rebuild it. After the sample a class is added to the ready classifier, which takes under a minute.
+    Everything goes through the REST service, as it would from another machine. A point cloud is classified only:
+    rebuilding needs faces. Exit status 0 only if every step succeeded.
 
     Examples:
 
@@ -89,6 +90,8 @@ def demo(
             start_s = time.monotonic() - started_s
             console.print(f"   {service['url']}, worker {service['worker_pid']}, log {log} ({start_s:.1f} s)")
             report, page = _walk(client, console, query, output, seed, estimating)
+            if mesh is None:
+                _learn(client, console, report, output, seed)
             report["seconds"] |= {"start": start_s, "total": time.monotonic() - started_s}
             report["dashboard_url"] = service["dashboard_url"] + page
             finished = True
@@ -131,10 +134,12 @@ def _walk(
     closed = "" if is_cloud else ", closed" if uploaded["watertight"] else ", not closed"
     console.print(f"   {uploaded['vertex_count']} {'points' if is_cloud else 'vertices'}{faces}{closed}")
     body = {"mesh_id": mesh_id, "seed": seed}
-    found = _run(client, "classifying", "/v1/classifications", body)["result"]
+    classification = _run(client, "classifying", "/v1/classifications", body)
+    found = classification["result"]
     _print_answer(console, found)
     report = {
         "query": str(query),
+        "classifier_id": classification["classifier_id"],
         **{name: found[name] for name in ("class_name", "answer", "known", "probabilities")},
         "seconds": {"classification": found["seconds"]},
     }
@@ -155,6 +160,17 @@ def _walk(
     report |= {"model": fit["model"]["name"], **{name: fit[name] for name in SHOWN}}
     report |= {"picture_file": str(picture), "mesh_file": str(glb)}
     return report, f"#/estimations/{estimation['id']}"
+
+
+def _learn(client: "Client", console: "Console", report: dict[str, Any], output: Path, seed: int) -> None:
+    """Take the last step, if there is something to learn; note in the report what came of it."""
+    from cli.demo_learning import ADDED, add_class, can_add
+
+    if not can_add(client, report["classifier_id"]):
+        return
+    _step(console, 5, f"learn: add the class {ADDED} to the ready classifier")
+    report["learning"] = add_class(client, console, report["classifier_id"], output, seed)
+    report["seconds"]["learning"] = report["learning"].pop("seconds")
 
 
 def _print_answer(console: "Console", found: Any) -> None:
@@ -200,6 +216,8 @@ def _print_next(console: "Console", query: Path, report: dict[str, Any]) -> None
     lines = [f"{command} classify {mesh}"]
     if "model" in report:
         lines.append(f"{command} estimate {mesh} --class {report['class_name']} --picture fit.png")
+    if "learning" in report:
+        lines.append(f"{command} train {report['learning']['class_name']} --extend ready -o mine.onnx")
     lines.append(f"{command} demo YOUR-MESH")
     console.print("What to type next:")
     for line in lines:

@@ -56,8 +56,14 @@ def test_the_demo_once_on_its_sample(repository: Path, tmp_path: Path) -> None:
     assert report["distances"]["surface"] < 0.1
     assert report["verdict"]["residuals"]["followed_share"] > 0.8
     assert {"determined", "determined_up_to_scale"} & {p["status"] for p in report["parameters"]}
+    learned = report["learning"]
+    assert learned["before"]["answer"] != learned["class_name"], "the ready classifier has not learned it"
+    assert learned["after"]["answer"] == learned["after"]["class_name"] == learned["class_name"] == "chair"
+    assert learned["new_accuracy"] >= 0.7
+    assert learned["known_accuracy"] >= learned["known_accuracy_before"] - 0.05
     parts_s = report["seconds"]
-    assert 0 < parts_s["start"] + parts_s["classification"] + parts_s["estimation"] < parts_s["total"]
+    parts = ("start", "classification", "estimation", "learning")
+    assert 0 < sum(parts_s[part] for part in parts) < parts_s["total"]
     with Image.open(report["picture_file"]) as picture:
         pixels = np.asarray(picture)
     assert pixels.shape[1] == 3 * pixels.shape[0]
@@ -76,6 +82,7 @@ def test_it_keeps_serving_and_uses_a_kept_folder_again(tmp_path: Path) -> None:
     assert once.returncode == 0, once.stderr
     assert "it is a table" in once.stdout
     assert "Dashboard:" not in once.stdout, "nobody serves it any more"
+    assert "add the class" not in once.stdout, "that is shown with the sample alone"
     assert once.stderr.count("\n") < 40
 
     process = subprocess.Popen(
