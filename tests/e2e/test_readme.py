@@ -9,6 +9,7 @@ import pytest
 
 LESS = {
     "variations=100, images_per_variation=5, negatives=50": "variations=16, images_per_variation=3, negatives=8",
+    "known=known,": "known=known, settings=shapewright.ExtensionSettings(variations=8, rehearsed=4, negatives=8),",
     "default_rng(0), 1000)": "default_rng(0), 10)",
 }
 
@@ -41,6 +42,7 @@ def test_classify_and_rebuild(
     elsewhere = blocks(repository)[2].replace("examples/goblet.ply", str(repository / "examples" / "goblet.ply"))
     names |= run(elsewhere, {})
     assert names["probabilities"].shape == names["with_none"].shape == (10, 3)
+    assert names["with_chair"].class_names == (*names["models"], "chair")
     assert names["about"]["class_names"] == list(names["models"])
     assert (tmp_path / "fitted.glb").read_bytes()[:4] == b"glTF"
     assert names["volume"] > 0
