@@ -30,6 +30,7 @@ from shapewright.mesh.file import parse_mesh
 from shapewright.modeling import ProceduralModel, Recorder, compile_model
 from shapewright.training import TrainedClassifier, TrainingSettings
 from shapewright.training.broken.breaking import is_broken
+from workers import learning_plans
 from workers.context import JobContext, WorkerProgress
 from workers.runner import Runner
 from workers.settings import WorkerSettings
@@ -352,6 +353,16 @@ def test_a_classifier_is_extended_with_what_the_catalog_has(site: Site) -> None:
     trained = TrainedClassifier.read(site.artifacts.get(after.onnx_key), exemplars_of(site, after))
     assert trained.class_names == tuple(after.class_names)
     assert trained.exemplars.digests == (brick().digest, rod().digest, slab().digest)
+
+    with site.database.writing() as session:
+        late = catalog.request_classifier(session, [added], extending, base_classifier_id=base.id, now=now())
+    with site.database.writing() as session:
+        session.delete(catalog.get_model(session, rod().digest))
+    learning_plans._compiled.clear()  # as in a worker that has just started
+    run(site, late.job_id)
+    job = site.job(late.job_id)
+    assert job.state is JobState.FAILED
+    assert "there is no model" in job.error_detail
 
 
 def exemplars_of(site: Site, row: ClassifierRow) -> Exemplars:
