@@ -20,9 +20,9 @@ from shapewright.training.settings import TrainingSettings
 
 DROPPED: Final = 0.5
 """Share of the hidden values that a step of learning does without (Srivastava et al. 2014)."""
-_LEAST_STEPS: Final = 8
+LEAST_STEPS: Final = 8
 """Steps in an epoch at least: few pictures make smaller batches."""
-_WARM_UP: Final = 0.1
+WARM_UP: Final = 0.1
 """Share of the steps over which the learning rate rises."""
 
 
@@ -57,13 +57,13 @@ def train_head(
     widths = [data.features.shape[1], *hidden, int(data.labels[data.learned].max()) + 1]
     values_of = _Layers(widths, generator)
     batch_of = _batches(data, mean, deviation)
-    batch = min(settings.batch_size, max(1, len(learned) // _LEAST_STEPS))
+    batch = min(settings.batch_size, max(1, len(learned) // LEAST_STEPS))
     optimizer = torch.optim.AdamW(values_of.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay)
     rate = torch.optim.lr_scheduler.OneCycleLR(
         optimizer,
         settings.learning_rate,
         total_steps=settings.epochs * -(-len(learned) // batch) + 1,
-        pct_start=_WARM_UP,
+        pct_start=WARM_UP,
     )
     rng = np.random.default_rng(settings.seed)
     curves: dict[str, list[float]] = {"train_loss": [], "held_out_loss": [], "held_out_accuracy": []}

@@ -11,11 +11,8 @@ from torch.nn import functional
 from shapewright.progress import NULL_PROGRESS, Progress
 from shapewright.training.extension_settings import ExtensionSettings
 from shapewright.training.head import Layer
+from shapewright.training.head_training import LEAST_STEPS, WARM_UP
 
-_LEAST_STEPS: Final = 8
-"""Steps in an epoch at least: few pictures make smaller batches."""
-_WARM_UP: Final = 0.1
-"""Share of the steps over which the learning rate rises."""
 _USUAL_INPUTS: Final = 1280
 """Inputs of a last layer for which learning rates are given."""
 _LEAST_DEVIATION: Final = 1e-6
@@ -92,11 +89,11 @@ def learn_rows(
         whole.bias[learned_rows] += bias.detach().numpy() - change @ mean
         return whole
 
-    batch = min(settings.batch_size, max(1, len(learned) // _LEAST_STEPS))
+    batch = min(settings.batch_size, max(1, len(learned) // LEAST_STEPS))
     highest = settings.learning_rate * _USUAL_INPUTS / inputs.shape[1]
     optimizer = torch.optim.AdamW([weight, bias], lr=highest, weight_decay=settings.weight_decay)
     steps = settings.epochs * -(-len(learned) // batch) + 1
-    rate = torch.optim.lr_scheduler.OneCycleLR(optimizer, highest, total_steps=steps, pct_start=_WARM_UP)
+    rate = torch.optim.lr_scheduler.OneCycleLR(optimizer, highest, total_steps=steps, pct_start=WARM_UP)
     rng = np.random.default_rng(seed)
     curves: dict[str, list[float]] = {"train_loss": [], "held_out_loss": [], "held_out_accuracy": []}
     best_loss, best_epoch, best = judged()[0], -1, layer()
