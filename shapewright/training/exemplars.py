@@ -69,11 +69,15 @@ def joined_exemplars(base: Exemplars, new: Exemplars) -> Exemplars:
     )
 
 
-def usual_distances_of(exemplars: Exemplars) -> list[float]:
+def usual_distances_of(exemplars: Exemplars, *, otherwise: float) -> list[float]:
     """Return the distance of each class within which nine of ten of its exemplars lie of another exemplar of it.
 
     An exemplar is compared with those of other models of its class, if there are any. So the training measures the
     distances that are usual, but on variations of models that it has left out.
+
+    Args:
+        exemplars: of the classes.
+        otherwise: the distance of a class that has a single exemplar.
     """
     own = np.empty(len(exemplars))
     for row in range(len(exemplars)):
@@ -81,7 +85,8 @@ def usual_distances_of(exemplars: Exemplars) -> list[float]:
         distances[row] = np.inf  # this is itself
         nearest, _ = exemplars.nearest(distances, without_model=int(exemplars.models[row]))
         own[row] = nearest[exemplars.classes[row]]
-    return [float(np.quantile(own[exemplars.classes == number], USUAL)) for number in range(len(exemplars.class_names))]
+    classes = [own[exemplars.classes == number] for number in range(len(exemplars.class_names))]
+    return [float(np.quantile(one, USUAL)) if np.isfinite(one).all() else otherwise for one in classes]
 
 
 def central_rows(descriptors: Float32[np.ndarray, "M D"], count: int) -> Int[np.ndarray, " K"]:

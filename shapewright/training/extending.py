@@ -234,7 +234,7 @@ def learn_extension(extension: Extension, store: ArrayStore, progress: Progress 
         descriptors = load_descriptors(extension.new_plan, extension.drawing, store)
         new = exemplars_of(extension.new_plan, descriptors, extension.drawing)
         if usual is not None:
-            usual = [*usual, *usual_distances_of(new)]
+            usual = [*usual, *usual_distances_of(new, otherwise=float(np.median(usual)))]
         exemplars = joined_exemplars(exemplars, new)
     else:
         usual = None

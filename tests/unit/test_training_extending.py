@@ -19,6 +19,7 @@ from shapewright.training import (
     extend_classifier,
     train_classifier,
 )
+from shapewright.training.exemplars import usual_distances_of
 from shapewright.training.extending import learn_extension, plan_extension
 from shapewright.training.learning import draw_and_describe
 
@@ -205,6 +206,13 @@ def test_settings_are_checked_and_those_of_the_base_cannot_be_chosen():
     ):
         with pytest.raises(ClassifierError, match=told):
             ExtensionSettings.from_dict(values)
+
+
+def test_a_single_exemplar_has_the_distance_that_is_usual_for_others(extended):
+    exemplars = extended.exemplars
+    rows = np.concatenate([np.flatnonzero(exemplars.classes == 0)[:1], np.flatnonzero(exemplars.classes > 0)])
+    distances = usual_distances_of(exemplars.taken(rows), otherwise=0.25)
+    assert distances == [0.25, *usual_distances_of(exemplars, otherwise=0.25)[1:]]
 
 
 def test_it_can_be_cancelled(base):
