@@ -13,7 +13,9 @@ from shapewright.evaluation.corruptions.ground import add_ground
 from shapewright.mesh import PointCloud, TriangleMesh
 from shapewright.training import TrainingSettings, train_classifier
 
-SETTINGS = TrainingSettings(variations=16, images_per_variation=3, image_size=96, negatives=8, held_out=0.25, epochs=15)
+SETTINGS = TrainingSettings(
+    variations=24, images_per_variation=4, image_size=96, negatives=12, held_out=0.25, epochs=15
+)
 NAMES = sorted(toy_classes())
 
 
@@ -59,7 +61,7 @@ def test_winding_hardly_changes_answers(classifier) -> None:
         for share in (0.5, 1.0):
             other = classifier.classify(simple_shapes.flipped(mesh, share), views=6)
             assert other.class_name == answer.class_name
-            assert np.abs(other.per_view - answer.per_view).mean() < 0.05
+            assert np.abs(other.per_view - answer.per_view).mean() < 0.1
 
 
 def test_answers_about_clouds_repeat(classifier) -> None:

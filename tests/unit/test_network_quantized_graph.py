@@ -9,10 +9,12 @@ import onnxruntime
 import pytest
 import simple_shapes
 
+from shapewright.classification.look import Look
+from shapewright.classification.pictures import draw
 from shapewright.network import FeatureExtractor, load_backbone
 from shapewright.network.backbone import RANGES_FILE, Backbone, efficientnet_lite0_layers
 from shapewright.network.quantized_graph import quantized_features_graph, range_names
-from shapewright.rendering import random_views, render_images
+from shapewright.rendering import random_views
 from shapewright.training import TrainingSettings
 from shapewright.training.calibration import Calibration
 from shapewright.training.export import classifier_metadata, export_classifier
@@ -28,21 +30,13 @@ def ranges() -> dict[str, tuple[float, float]]:
 def test_both_graphs_agree_on_drawn_pictures() -> None:
     rotations, scales = random_views(np.random.default_rng(0), 12, scale_range=(0.7, 1.0))
     meshes = [simple_shapes.goblet(), simple_shapes.stool(), simple_shapes.crossing_sheets()]
-    pictures = render_images(
-        meshes,
-        None,
-        rotations,
-        scales,
-        objects=np.repeat(np.arange(3), 4),
-        style="fused",
-        framing="sphere",
-        window=1.0,
-    )
+    look = Look("splats", 224, "sphere", 1.0, (0.7, 1.0))
+    pictures = draw(meshes, rotations, scales, look, shown=np.repeat(np.arange(3), 4))
     exact = FeatureExtractor(load_backbone("efficientnet_lite0"))(pictures)
     whole = FeatureExtractor(load_backbone("efficientnet_lite0_int8"))(pictures)
     alike = [np.corrcoef(one, other)[0, 1] for one, other in zip(exact, whole, strict=True)]
     assert np.mean(alike) > 0.975
-    assert min(alike) > 0.94, "bare sheets are the worst"
+    assert min(alike) > 0.92, "bare sheets are the worst"
     others = [np.corrcoef(one, other)[0, 1] for one, other in zip(exact, np.roll(whole, 4, axis=0), strict=True)]
     assert max(others) < min(alike), "another object is never as near"
     middle = exact.mean(axis=0)
