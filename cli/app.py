@@ -103,6 +103,6 @@ for verb in (
 
 def main() -> None:
     """Entry point of the installed command."""
-    # OpenMP's threads spin where they wait for the next kernel, and take the processor from what runs between them.
+    # Idle OpenMP threads would spin until the next kernel, and slow down the code that runs in between.
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     app()

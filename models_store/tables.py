@@ -174,9 +174,9 @@ class MeshRow(Base):
 class ClassifierRow(Base):
     """A classifier: asked for with its job, complete once ``onnx_key`` is set. The one that ships has no job.
 
-    ``negative_model_ids`` and ``exemplars_key`` are null in older rows, and where there is no such thing. A classifier
-    that extends another has ``base_classifier_id``, and the models and classes of both. The column is no foreign key:
-    the base is not needed once the training has succeeded.
+    ``negative_model_ids`` and ``exemplars_key`` are null in older rows and in classifiers without them. A classifier
+    that extends another one names it in ``base_classifier_id``, and lists the models and classes of both. The column is
+    not a foreign key: the base may be deleted once the training has succeeded.
     """
 
     __tablename__ = "classifiers"

@@ -80,7 +80,7 @@ def create_celery(settings: WorkerSettings | None = None) -> WorkerCelery:
     Args:
         settings: read from the environment if not given.
     """
-    # OpenMP's threads spin where they wait for the next kernel, and take the processor from what runs between them.
+    # Idle OpenMP threads would spin until the next kernel, and slow down the code that runs in between.
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     settings = settings or WorkerSettings()
     celery = WorkerCelery(settings, set_as_current=False)

@@ -58,13 +58,11 @@ class NeighborOut(OutBody):
     exemplar: int = Field(description="Its row among the exemplars of the classifier.")
     values: list[float] | None = Field(
         default=None,
-        description="In the order of the model's parameters; null if the model was not in the catalog, and in older "
-        "answers.",
+        description="Parameter values, in the order of the model's parameters; null if the catalog lacked the model, "
+        "and in older answers.",
     )
     distance: float = Field(description="Panorama distance of the mesh.")
-    usual_distance: float | None = Field(
-        description="Within it lie nine of ten variations of models that were left out of the training."
-    )
+    usual_distance: float | None = Field(description="Nine of ten trial variations of the class were nearer to it.")
 
 
 class ClassificationResultOut(OutBody):
@@ -74,9 +72,9 @@ class ClassificationResultOut(OutBody):
     answer: str | None = Field(default=None, description="The class, or `unknown`.")
     known: float | None = Field(
         default=None,
-        description="Probability that the mesh is of one of the classes at all; null if the classifier has not "
-        "learned what is unknown. `answer` is `unknown` where it is below 0.5; for other thresholds see `trade_off` of "
-        "the classifier.",
+        description="Probability that the mesh belongs to any of the classes; null if the classifier was trained "
+        "without objects of no class. Below 0.5, `answer` is `unknown`; `trade_off` of the classifier lists what other "
+        "thresholds accept and refuse.",
     )
     probabilities: list[ClassProbabilityOut] = Field(
         description="By all evidence, given that it is one of them; most probable class first."

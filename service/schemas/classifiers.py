@@ -20,7 +20,7 @@ class TrainingSettingsIn(InBody):
     images_per_variation: Annotated[int, Field(ge=1, le=1000)] | None = None
     rehearsed: Annotated[int, Field(ge=2, le=100_000)] | None = Field(
         default=None,
-        description="Variations of each class that the base classifier knows which are drawn again; only with "
+        description="Variations to draw again of each class that the base classifier knows; only with "
         "`base_classifier_id`.",
     )
     image_size: Annotated[int, Field(ge=32, le=1024)] | None = Field(
@@ -46,7 +46,9 @@ class TrainingSettingsIn(InBody):
     held_out: Annotated[float, Field(gt=0, lt=1)] | None = Field(
         default=None, description="Share of the variations that measure the accuracy."
     )
-    hidden: Annotated[int, Field(ge=0, le=4096)] | None = None
+    hidden: Annotated[int, Field(ge=0, le=4096)] | None = Field(
+        default=None, description="Values of the hidden layer; 0 trains a single layer, as the paper does."
+    )
     epochs: Annotated[int, Field(ge=1, le=10_000)] | None = None
     patience: Annotated[int, Field(ge=1, le=10_000)] | None = Field(
         default=None, description="Epochs without a better held-out loss after which training stops."
@@ -109,26 +111,27 @@ class ClassifierIn(InBody):
     )
     base_classifier_id: Identifier | None = Field(
         default=None,
-        description="Add the classes to this classifier, which takes under a minute: the classes that it knows stay as "
-        "they are. Of `settings` an extension takes `variations`, `images_per_variation`, `rehearsed`, `negatives`, "
-        "`held_out` and those of the learning itself; the others are those of the base.",
+        description="Add the classes to this trained classifier, in under a minute; the classes it knows stay as they "
+        "are. An extension accepts the `settings` `variations`, `images_per_variation`, `rehearsed`, `negatives`, "
+        "`held_out` and those of the optimizer, and takes the others from the base.",
     )
     negative_model_ids: Annotated[list[Identifier], Field(max_length=10_000)] = Field(
         default_factory=list,
-        description="Models of things that are of none of the classes, to learn what is unknown; random assemblies "
-        "are learned from in any case. Left empty with `base_classifier_id`, those that the base was trained with.",
+        description="Models of objects that belong to none of the classes: they teach the classifier to answer "
+        "`unknown`, as random assemblies always do. If empty with `base_classifier_id`, those of the base are used.",
     )
     settings: TrainingSettingsIn = Field(default_factory=TrainingSettingsIn)
 
 
 class TradeOffPointOut(OutBody):
-    """What one threshold of `known` accepts and refuses."""
+    """The shares that one threshold of `known` accepts and refuses."""
 
-    threshold: float = Field(description="Meshes whose `known` is below are unknown.")
+    threshold: float = Field(description="A mesh with a lower `known` is unknown.")
     accepted_known: float = Field(
-        description="Share of the variations of models left out of the training that are accepted."
+        description="Share of the trial variations that are accepted. Most come from models that were learned, the "
+        "others from models that were left out."
     )
-    refused_other: float = Field(description="Share of the objects of no class that are unknown.")
+    refused_other: float = Field(description="Share of the objects of no class that are answered with `unknown`.")
 
 
 class ClassifierOut(OutBody):
@@ -144,8 +147,8 @@ class ClassifierOut(OutBody):
     settings: dict[str, Any]
     metrics: dict[str, Any] | None
     trade_off: list[TradeOffPointOut] | None = Field(
-        description="What thresholds of `known` accept and refuse, lowest first; null until the training has "
-        "succeeded, and if it did not measure it."
+        description="Shares that thresholds of `known` accept and refuse, lowest threshold first; null until the "
+        "training has succeeded, and if no model could be left out."
     )
     job_id: str | None = Field(description="The training; null for the ready classifier, which ships trained.")
     onnx_url: str | None = Field(description="The ONNX file; null until the training has succeeded.")

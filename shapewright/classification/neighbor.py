@@ -16,8 +16,8 @@ class Neighbor:
         digest: the model of the exemplar.
         row: which exemplar, see :meth:`shapewright.classification.Exemplars.values`.
         distance: panorama distance of the query.
-        usual_distance: nine of ten variations of models that were left out of the training were nearer to the class;
-            ``None`` if the training did not measure it.
+        usual_distance: nine of ten trial variations of the class were nearer to it; ``None`` if the training did not
+            measure it.
     """
 
     class_name: str

@@ -56,10 +56,10 @@ class Reading:
         return splat_cloud(self.points, self.spacing if self.surface is None else 0.0)
 
     def described_surface(self, *, by_surfels: bool = False) -> TriangleMesh:
-        """Return what is compared: the mesh, or surfels, which neither noise nor small holes change much.
+        """Return the surface to compare: the mesh, or surfels, which noise and small holes hardly change.
 
         Args:
-            by_surfels: take surfels in place of a mesh, too; a point cloud has nothing else.
+            by_surfels: return surfels even if there is a mesh; a point cloud always has surfels.
         """
         return surfels(self.points, self.spacing) if by_surfels or self.surface is None else self.surface
 

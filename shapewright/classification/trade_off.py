@@ -1,6 +1,6 @@
-"""What a threshold of ``known`` accepts and refuses, as the training of a classifier measured it (ours).
+"""The trade-off behind a threshold of ``known``, as the training of a classifier measured it (ours).
 
-A lower threshold accepts more objects of the classes, and more of what is of no class.
+A lower threshold accepts more objects of the classes, but also more objects of no class.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,7 +17,8 @@ class TradeOffPoint:
 
     Args:
         threshold: objects whose ``known`` is below are answered with ``unknown``.
-        accepted_known: share of the variations of models left out of the training that are accepted.
+        accepted_known: share of the trial variations that are accepted. Most come from models that were learned, the
+            others from models that were left out.
         refused_other: share of the objects of no class that are answered with ``unknown``.
     """
 

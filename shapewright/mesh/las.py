@@ -8,11 +8,11 @@ import numpy as np
 from shapewright.errors import MeshFileError
 
 _RECORD_COUNT: Final = slice(100, 104)
-"""Bytes of a header that hold the number of the records between it and the points (LAS 1.0 to 1.5)."""
+"""Bytes of the header with the number of variable-length records (LAS 1.0 to 1.5)."""
 _LEAST_RECORD: Final = 54
-"""Bytes of a record without content."""
+"""Size of an empty record in bytes."""
 _PANIC: Final = "PanicException"
-"""What a library in Rust raises where it meets something that its authors held to be impossible; it has no module."""
+"""Name of the exception that a panic in a Rust library becomes; no module exports it."""
 
 
 def read_las(data: bytes, most_points: int) -> np.ndarray:
@@ -23,7 +23,7 @@ def read_las(data: bytes, most_points: int) -> np.ndarray:
     """
     import laspy
 
-    # laspy goes on reading records behind the end of a file
+    # laspy does not stop reading records at the end of the file
     records = int.from_bytes(data[_RECORD_COUNT], "little")
     if records * _LEAST_RECORD > len(data):
         raise MeshFileError(f"{records} records stated, {len(data)} bytes there", where="LAS header")
@@ -40,11 +40,11 @@ def read_las(data: bytes, most_points: int) -> np.ndarray:
             if reader.header.are_points_compressed:
                 _check_chunks(data, reader.header.offset_to_point_data, count)
             record = reader.read_points(count)
-            with np.errstate(all="ignore"):  # who takes the points looks whether they are finite
+            with np.errstate(all="ignore"):  # the caller refuses points that are not finite
                 points = np.column_stack([np.asarray(record[axis], dtype=np.float64) for axis in "xyz"])
     except (MeshFileError, MemoryError):
         raise
-    except BaseException as error:  # whatever a parser meets in a stranger's bytes; a panic of lazrs is no Exception
+    except BaseException as error:  # the parser fails in many ways; a panic of lazrs is not an Exception
         if not isinstance(error, Exception) and type(error).__name__ != _PANIC:
             raise
         reason = str(error) or type(error).__name__
@@ -55,12 +55,12 @@ def read_las(data: bytes, most_points: int) -> np.ndarray:
 
 
 def _check_chunks(data: bytes, start: int, points: int) -> None:
-    """Refuse a table of more chunks than there are points: room for all of it is taken before it is read.
+    """Refuse a chunk table with more chunks than points: lazrs allocates the whole table before it reads it.
 
-    The compressed points begin with the place of the table, or with -1 if that is in the last eight bytes.
+    The compressed points begin with the offset of the table, or with -1 if the last eight bytes hold it.
 
     Raises:
-        MeshFileError: it is refused.
+        MeshFileError: the table has more chunks than points.
     """
     place = int.from_bytes(data[start : start + 8], "little", signed=True)
     if place == -1:

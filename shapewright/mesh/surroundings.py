@@ -19,10 +19,11 @@ _CELLS: Final = 32
 _SPACINGS: Final = 2.5
 """A cell is no smaller than so many distances between neighboring points."""
 _SPECK_CELLS: Final = 56
-"""The same as the cells, for specks: they may float closer to the object."""
+"""Cells along the diagonal of the grid that finds specks, which may float closer to the object than larger pieces."""
 _SPECK_SPACINGS: Final = 2.0
+"""Least size of these cells, in distances between neighboring points."""
 _SPECK_EXTENT: Final = 1.5
-"""Extent of a speck, in its cells, at most."""
+"""Largest extent of a speck, in these cells."""
 _FAR: Final = 2**16
 """Cells beyond the bulk at which all that is farther away counts as if it were there; more would overflow the keys."""
 _LARGEST_SHARE: Final = 0.015

@@ -1,13 +1,13 @@
 """How sure a classifier may be: tried on models that it has not learned from (ours).
 
 Held-out variations of a model that was learned are far easier than real objects are. So the models are split into
-folds: a last layer learns without a fold's models and is tried on their variations, and on objects of no class that
+folds: a head learns without a fold's models and is tried on their variations, and on objects of no class that
 it did not learn from either. What it says there sets the temperature and the curve that tells known from unknown, and
 is the honest forecast among the figures of a training. Where there is nothing to leave out (classes of one model each)
 held-out variations have to do for both, and there is no forecast. Labels of real meshes have no part in it.
 
-Most real objects are like a model that was learned, some like one that was left out. So held-out variations of models
-that the fold has learned are tried, too; the forecast is of the left-out models alone.
+Most real objects resemble a model that was learned, and some resemble one that was left out. So each fold is also tried
+on held-out variations of the models it has learned; the forecast counts the left-out models alone.
 """
 
 from dataclasses import dataclass
@@ -23,6 +23,7 @@ from shapewright.classification.trade_off import measure_trade_off, trade_off_ke
 from shapewright.distances.panorama import PanoramaDescriptor
 from shapewright.progress import NULL_PROGRESS, PartialProgress, Progress
 from shapewright.training.dataset import FeatureSet, Plan
+from shapewright.training.exemplars import USUAL
 from shapewright.training.head import softmax
 from shapewright.training.head_training import train_head
 from shapewright.training.settings import TrainingSettings
@@ -34,12 +35,10 @@ _LEARNED_A_SHARE: Final = 60
 _TRIED_A_KIND: Final = 60
 """Variations of each class, and objects of each source without a class, that are tried."""
 _FAMILIAR: Final = 3
-"""Variations of learned models that are tried for each one of a left-out model. Of real meshes about as many are
-accepted as of the former (91 and 92 %), more than of the latter (75 %)."""
+"""Variations of learned models tried for each variation of a left-out model. The curve accepts real meshes about as
+often as the former (91 and 92 %), and more often than the latter (75 %)."""
 _VIEWS: Final = 4
 _BINS: Final = 15
-USUAL: Final = 0.9
-"""Share of the variations whose distances count as usual."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +65,7 @@ class Calibration:
 
 @dataclass(frozen=True, eq=False)
 class _Tried:
-    """Meshes that a fold was tried on, and which of them are like what it has learned."""
+    """Meshes that a fold was tried on, and which of them come from models it has learned."""
 
     meshes: Int[np.ndarray, " M"]
     is_familiar: Bool[np.ndarray, " M"]
@@ -171,7 +170,7 @@ def _honest(
 ) -> tuple[Int[np.ndarray, " M"], Bool[np.ndarray, " M"]]:
     """Which of the meshes that were tried count, and whether each is of a source that its fold had not learned from.
 
-    Beside the familiar ones only such meshes count, unless there are none of classes, or none of no class.
+    Only such meshes and the familiar ones count, unless there are none of classes, or none of no class.
     """
     left_out = ((folds[data.sources[tried]] >= 0) | ~data.learned[tried]) & ~familiar
     known = data.labels[tried] < data.class_count
@@ -263,7 +262,10 @@ def _distances(
     meshes: Int[np.ndarray, " K"],
     familiar: Bool[np.ndarray, " K"],
 ) -> Float[np.ndarray, "K C"]:
-    """Distances to the nearest exemplars other than the mesh itself; of its own model only for a familiar mesh."""
+    """Return the distance of each mesh to the nearest exemplar of each class, leaving out the mesh itself.
+
+    The other exemplars of its own model are left out, too, unless the mesh is familiar.
+    """
     near = np.empty((len(meshes), data.class_count))
     for row, mesh in enumerate(meshes):
         distances = exemplars.distances(PanoramaDescriptor.from_array(descriptors[mesh]))

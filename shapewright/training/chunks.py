@@ -218,9 +218,9 @@ def _pictures(
 
 
 def _panoramas(objects: Sequence[TriangleMesh | PointCloud], first: int) -> Float32[np.ndarray, "N D"]:
-    """Describe objects of a series from number ``first`` on; every other one by surfels, also where it has faces.
+    """Describe objects of a series, from number ``first`` on; every other one by surfels, even if it has faces.
 
-    What a scanner and a hole do to a surface makes it unlike any whole one, but hardly unlike its surfels.
+    Noise and holes take a scan far from the descriptors of whole surfaces, but not from those of surfels.
     """
     import numba
 

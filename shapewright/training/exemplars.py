@@ -1,15 +1,18 @@
 """Exemplars of what a classifier learned from."""
 
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 from jaxtyping import Float, Float32, Int
 
 from shapewright.classification.exemplars import Exemplars
 from shapewright.distances.panorama import PanoramaDescriptor, panorama_distances
-from shapewright.training.calibration import USUAL
 from shapewright.training.dataset import Plan, evenly
 from shapewright.training.settings import TrainingSettings
+
+USUAL: Final = 0.9
+"""Share of the variations whose distances count as usual."""
 
 
 def exemplars_of(plan: Plan, descriptors: Float[np.ndarray, "A D"], settings: TrainingSettings) -> Exemplars:
@@ -56,7 +59,7 @@ def representatives(exemplars: Exemplars, per_class: int) -> Exemplars:
 def joined_exemplars(base: Exemplars, new: Exemplars) -> Exemplars:
     """Return the exemplars of both; the classes and models of ``new`` come after those of ``base``.
 
-    Both have to be of one seed and one number of subdivision steps.
+    Both must have the same seed and number of subdivision steps.
     """
     return replace(
         base,
@@ -70,10 +73,9 @@ def joined_exemplars(base: Exemplars, new: Exemplars) -> Exemplars:
 
 
 def usual_distances_of(exemplars: Exemplars, *, otherwise: float) -> list[float]:
-    """Return the distance of each class within which nine of ten of its exemplars lie of another exemplar of it.
+    """Return the distance of each class within which nine of ten of its exemplars find another one.
 
-    An exemplar is compared with those of other models of its class, if there are any. So the training measures the
-    distances that are usual, but on variations of models that it has left out.
+    An exemplar is compared with those of other models of its class, if there are any.
 
     Args:
         exemplars: of the classes.

@@ -31,7 +31,7 @@ class Head:
     there are classes, for objects that are of none.
 
     Args:
-        layers: from features to class values; the standardisation of the features is folded into the first.
+        layers: from features to class values; the standardization of the features is folded into the first.
         class_count: number of classes, C.
         temperature: softens the class values so that probabilities mean what they say; at least 1.
         curves: figures of each epoch: train_loss, held_out_loss, held_out_accuracy.

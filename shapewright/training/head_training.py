@@ -1,7 +1,7 @@
 """Learning a head with torch on stored features (paper section 3.2; the hidden layer is ours).
 
 The paper learns one layer. Objects that are whole, seen from one side, full of holes or rounded to a grid belong to one
-class and look different; a hidden layer can hold them together where a single layer cannot.
+class and look different; a hidden layer can keep them together where a single layer cannot.
 """
 
 from collections.abc import Callable
@@ -19,11 +19,11 @@ from shapewright.training.head import Head, Layer
 from shapewright.training.settings import TrainingSettings
 
 DROPPED: Final = 0.5
-"""Share of the hidden values that a step of learning does without (Srivastava et al. 2014)."""
+"""Share of the hidden values that each step drops (Srivastava et al. 2014)."""
 LEAST_STEPS: Final = 8
-"""Steps in an epoch at least: few pictures make smaller batches."""
+"""Least number of steps in an epoch: few pictures make smaller batches."""
 WARM_UP: Final = 0.1
-"""Share of the steps over which the learning rate rises."""
+"""Share of the steps in which the learning rate rises."""
 
 
 def train_head(
@@ -34,15 +34,15 @@ def train_head(
     learned: Int[np.ndarray, " L"] | None = None,
     apart: Int[np.ndarray, " A"] | None = None,
 ) -> Head:
-    """Learn the last layers by cross entropy with AdamW on standardised features, in one cycle of the learning rate.
+    """Learn the last layers by cross entropy with AdamW on standardized features, in one cycle of the learning rate.
 
-    Weights of the epoch with the lowest loss on the pictures that are kept apart are kept. Deterministic: everything
-    random comes from the seed. Torch's global generator is left alone.
+    Keep the weights of the epoch with the lowest loss on the held-out pictures. Deterministic: all random numbers come
+    from the seed, and torch's global generator is not used.
 
     Args:
         data: features of all pictures.
         settings: how to learn.
-        progress: hears of every epoch; may cancel.
+        progress: receives a report after every epoch; may cancel.
         learned: rows to learn from; by default all that are learned and not held out.
         apart: rows for early stopping; by default the held-out ones.
 
@@ -143,7 +143,7 @@ def _batches(data: FeatureSet, mean: Float[np.ndarray, " D"], deviation: Float[n
 
 
 def _loss_and_accuracy(batch_of: _Batches, rows: Int[np.ndarray, " A"], values_of: _Layers) -> tuple[float, float]:
-    """Mean loss and share of right pictures, piece by piece: no second copy of many features."""
+    """Return the mean loss and the share of right pictures, without a second copy of all features."""
     loss, right = 0.0, 0.0
     with torch.no_grad():
         for part in np.array_split(rows, max(1, len(rows) // 4096)):
@@ -155,7 +155,7 @@ def _loss_and_accuracy(batch_of: _Batches, rows: Int[np.ndarray, " A"], values_o
 
 
 def _for_plain_features(layer: Layer, mean: Float[np.ndarray, " D"], deviation: Float[np.ndarray, " D"]) -> Layer:
-    """Fold the standardisation of the features into the layer that reads them."""
+    """Fold the standardization of the features into the layer that reads them."""
     weight = layer.weight.astype(np.float64) / deviation
     return Layer(weight.astype(np.float32), (layer.bias - weight @ mean).astype(np.float32))
 
@@ -163,7 +163,7 @@ def _for_plain_features(layer: Layer, mean: Float[np.ndarray, " D"], deviation: 
 def _mean_and_deviation(
     features: Float[np.ndarray, "N D"], rows: Int[np.ndarray, " M"]
 ) -> tuple[Float[np.ndarray, " D"], Float[np.ndarray, " D"]]:
-    """Mean and standard deviation of some rows, without a second copy of all features."""
+    """Return the mean and standard deviation of some rows, without a second copy of all features."""
     total = np.zeros(features.shape[1])
     squares = np.zeros(features.shape[1])
     for part in np.array_split(rows, max(1, len(rows) // 4096)):

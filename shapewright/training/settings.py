@@ -30,7 +30,7 @@ class TrainingSettings:
         exemplars_per_class: keep so many of them, those that represent the rest best; 0 keeps all.
         vary: whether variations vary; without, all pictures show base models (the paper's baseline, section 4.2).
         held_out: share of each class's *variations* (not pictures) kept for early stopping and calibration.
-        hidden: values of the head's hidden layer; 0 learns a single layer, as the paper does.
+        hidden: values of the head's hidden layer; 0 trains a single layer, as the paper does.
         epochs: passes over the features at most; the learning rate falls to nothing over them.
         patience: passes without a better held-out loss after which training stops.
         learning_rate: highest one of AdamW, for standardised features.

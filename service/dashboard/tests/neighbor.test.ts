@@ -31,7 +31,7 @@ describe("the nearest variation in words", () => {
     expect(neighborText(neighbor, true)).toBe("Distance 0.41 from the nearest variation; up to 0.23 is usual.");
   });
 
-  it("does without what was not measured", () => {
+  it("omits the usual distance if it was not measured", () => {
     const unmeasured = { ...neighbor, usual_distance: null };
     expect(neighborText(unmeasured, true)).toBe("Distance 0.41 from the nearest variation.");
     expect(neighborText(unmeasured, false)).toBe("The nearest variation of this class is at distance 0.41.");

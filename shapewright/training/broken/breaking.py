@@ -18,15 +18,15 @@ VERSION: Final = 3
 """Raise it when the same generator breaks a variation differently."""
 
 OFTEN: Final[Mapping[str, int]] = MappingProxyType({"one_sided": 3, "rounded": 2})
-"""How many times as often as the others the breaks are drawn that change an object most."""
+"""Breaks that change an object most, and how many times as often as the others they are drawn."""
 TWICE: Final = 1.0 / 3.0
-"""Share of the broken variations that are broken in a second way, too: a scan has more than one fault."""
+"""Share of the broken variations that get a second break: a scan has more than one fault."""
 _GOLDEN: Final = (5.0**0.5 - 1.0) / 2.0
 
 Break = Callable[[TriangleMesh, np.random.Generator], TriangleMesh | PointCloud]
 """Takes a variation and the source of all choices, strength included; returns what is left of it."""
 BreakMore = Callable[[TriangleMesh | PointCloud, np.random.Generator], PointCloud]
-"""The same for what is broken already."""
+"""A break that can follow another one."""
 
 BREAKS: Final[Mapping[str, Break]] = MappingProxyType(
     {
@@ -40,7 +40,7 @@ BREAKS: Final[Mapping[str, Break]] = MappingProxyType(
 )
 """Every way to break a variation by its name."""
 SECOND_BREAKS: Final[Mapping[str, BreakMore]] = MappingProxyType({"noise": shake_surface, "holes": lose_patches})
-"""Those among them that can come after another one."""
+"""The breaks that can follow another one, by name."""
 
 
 def is_broken(number: int, share: float) -> bool:
@@ -53,7 +53,7 @@ def is_broken(number: int, share: float) -> bool:
 
 
 def broken(mesh: TriangleMesh, breaks: Sequence[str], rng: np.random.Generator) -> TriangleMesh | PointCloud:
-    """Return a variation broken in one random way, or in two.
+    """Break a variation in one random way, or in two.
 
     Args:
         mesh: the variation.

@@ -31,7 +31,7 @@ def keep_visible(mesh: TriangleMesh, rng: np.random.Generator) -> PointCloud:
 def _is_seen(
     points: Float[np.ndarray, "N 3"], vertices: Float[np.ndarray, "V 3"], mesh: TriangleMesh
 ) -> Bool[np.ndarray, " N"]:
-    """Return which points of a mesh, placed as its vertices are, no face hides from who looks along -z."""
+    """Tell which points on a mesh are visible along -z; points and vertices are in the same frame."""
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     zoom = 2.0 * 0.99 * WINDOW / float((high - low).max())
     frame = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]])

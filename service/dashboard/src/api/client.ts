@@ -168,7 +168,7 @@ export function createApi(baseUrl: string, fetcher?: (request: Request) => Promi
       );
     },
 
-    /** Add classes to a trained classifier; models of other things keep unknown what is unknown. */
+    /** Add a class to a trained classifier; the other models teach it which objects stay unknown. */
     async extendClassifier(input: {
       base: Classifier;
       className: string;

@@ -954,7 +954,7 @@ export interface components {
             answer: string | null;
             /**
              * Known
-             * @description Probability that the mesh is of one of the classes at all; null if the classifier has not learned what is unknown. `answer` is `unknown` where it is below 0.5; for other thresholds see `trade_off` of the classifier.
+             * @description Probability that the mesh belongs to any of the classes; null if the classifier was trained without objects of no class. Below 0.5, `answer` is `unknown`; `trade_off` of the classifier lists what other thresholds accept and refuse.
              */
             known: number | null;
             /**
@@ -1001,12 +1001,12 @@ export interface components {
             model_ids: string[];
             /**
              * Base Classifier Id
-             * @description Add the classes to this classifier, which takes under a minute: the classes that it knows stay as they are. Of `settings` an extension takes `variations`, `images_per_variation`, `rehearsed`, `negatives`, `held_out` and those of the learning itself; the others are those of the base.
+             * @description Add the classes to this trained classifier, in under a minute; the classes it knows stay as they are. An extension accepts the `settings` `variations`, `images_per_variation`, `rehearsed`, `negatives`, `held_out` and those of the optimizer, and takes the others from the base.
              */
             base_classifier_id?: string | null;
             /**
              * Negative Model Ids
-             * @description Models of things that are of none of the classes, to learn what is unknown; random assemblies are learned from in any case. Left empty with `base_classifier_id`, those that the base was trained with.
+             * @description Models of objects that belong to none of the classes: they teach the classifier to answer `unknown`, as random assemblies always do. If empty with `base_classifier_id`, those of the base are used.
              */
             negative_model_ids?: string[];
             settings?: components["schemas"]["TrainingSettingsIn"];
@@ -1042,7 +1042,7 @@ export interface components {
             } | null;
             /**
              * Trade Off
-             * @description What thresholds of `known` accept and refuse, lowest first; null until the training has succeeded, and if it did not measure it.
+             * @description Shares that thresholds of `known` accept and refuse, lowest threshold first; null until the training has succeeded, and if no model could be left out.
              */
             trade_off: components["schemas"]["TradeOffPointOut"][] | null;
             /**
@@ -2033,7 +2033,7 @@ export interface components {
             exemplar: number;
             /**
              * Values
-             * @description In the order of the model's parameters; null if the model was not in the catalog, and in older answers.
+             * @description Parameter values, in the order of the model's parameters; null if the catalog lacked the model, and in older answers.
              */
             values: number[] | null;
             /**
@@ -2043,7 +2043,7 @@ export interface components {
             distance: number;
             /**
              * Usual Distance
-             * @description Within it lie nine of ten variations of models that were left out of the training.
+             * @description Nine of ten trial variations of the class were nearer to it.
              */
             usual_distance: number | null;
         };
@@ -2607,22 +2607,22 @@ export interface components {
         };
         /**
          * TradeOffPointOut
-         * @description What one threshold of `known` accepts and refuses.
+         * @description The shares that one threshold of `known` accepts and refuses.
          */
         TradeOffPointOut: {
             /**
              * Threshold
-             * @description Meshes whose `known` is below are unknown.
+             * @description A mesh with a lower `known` is unknown.
              */
             threshold: number;
             /**
              * Accepted Known
-             * @description Share of the variations of models left out of the training that are accepted.
+             * @description Share of the trial variations that are accepted. Most come from models that were learned, the others from models that were left out.
              */
             accepted_known: number;
             /**
              * Refused Other
-             * @description Share of the objects of no class that are unknown.
+             * @description Share of the objects of no class that are answered with `unknown`.
              */
             refused_other: number;
         };
@@ -2640,7 +2640,7 @@ export interface components {
             images_per_variation?: number | null;
             /**
              * Rehearsed
-             * @description Variations of each class that the base classifier knows which are drawn again; only with `base_classifier_id`.
+             * @description Variations to draw again of each class that the base classifier knows; only with `base_classifier_id`.
              */
             rehearsed?: number | null;
             /**
@@ -2681,7 +2681,10 @@ export interface components {
              * @description Share of the variations that measure the accuracy.
              */
             held_out?: number | null;
-            /** Hidden */
+            /**
+             * Hidden
+             * @description Values of the hidden layer; 0 trains a single layer, as the paper does.
+             */
             hidden?: number | null;
             /** Epochs */
             epochs?: number | null;

@@ -5,7 +5,7 @@ import { isTerminal } from "../api/types";
 import { useJob } from "../hooks/useJob";
 import { classesToAdd, newestVersions } from "../lib/classes";
 import { usableClassifiers } from "../lib/classifiers";
-import { count } from "../lib/format";
+import { count, humanize } from "../lib/format";
 import { JobProgress } from "./JobProgress";
 import { LearningCurves } from "./LearningCurves";
 import { Problem } from "./Problem";
@@ -102,12 +102,12 @@ export function ClassifierPicker({ selectedId, onSelect }: ClassifierPickerProps
       {showForm && selected && chosen && (
         <div className="well">
           <div className="field">
-            <label htmlFor="added-class">Add a class to {selected.name || "this classifier"}</label>
+            <label htmlFor="added-class">Add a class to {selected.name ? `“${selected.name}”` : "this classifier"}</label>
             <div className="field-row">
               <select id="added-class" value={chosen.name} onChange={(event) => setAdded(event.target.value)}>
                 {addable.map(({ name }) => (
                   <option key={name} value={name}>
-                    {name}
+                    {humanize(name)}
                   </option>
                 ))}
               </select>
@@ -116,7 +116,7 @@ export function ClassifierPicker({ selectedId, onSelect }: ClassifierPickerProps
               </button>
             </div>
           </div>
-          <p className="hint">Takes under a minute; the classes that it knows stay.</p>
+          <p className="hint">Takes under a minute. The classes it already knows stay as they are.</p>
           {extend.error && <Problem error={extend.error} onDismiss={() => extend.reset()} />}
         </div>
       )}

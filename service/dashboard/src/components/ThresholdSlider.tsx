@@ -9,11 +9,11 @@ import { Icon } from "./Icon";
 interface ThresholdSliderProps {
   threshold: number;
   onThreshold: (threshold: number) => void;
-  /** What the training of the classifier measured, if it did. */
+  /** Measured by the training; `null` if it was not. */
   tradeOff: Classifier["trade_off"];
 }
 
-/** The threshold below which a mesh is unknown, and what it costs to move it. */
+/** The threshold below which a mesh is unknown, with its trade-off. */
 export function ThresholdSlider({ threshold, onThreshold, tradeOff }: ThresholdSliderProps) {
   const id = useId();
   const cost = tradeOffText(tradeOff, threshold);
@@ -46,7 +46,7 @@ export function ThresholdSlider({ threshold, onThreshold, tradeOff }: ThresholdS
           onChange={(event) => onThreshold(event.target.valueAsNumber)}
         />
       </div>
-      <p className="hint" id={`${id}-cost`} title={cost === null ? undefined : "Measured on models left out of the training"}>
+      <p className="hint" id={`${id}-cost`} title={cost === null ? undefined : "Measured by the training, on variations it did not learn from"}>
         {cost ?? "The effect of the threshold was not measured for this classifier."}
       </p>
     </div>

@@ -3,7 +3,7 @@ import type { Model, Neighbor } from "../api/types";
 import { settledValues } from "./parameterSpace";
 import type { Values } from "./parameterSpace";
 
-/** How far the nearest variation is, against what is usual; of an unknown mesh it says why. */
+/** The distance of the nearest variation and the usual one; for an unknown mesh, also the reason. */
 export function neighborText({ distance, usual_distance: usual }: Neighbor, known: boolean): string {
   const far = distance.toFixed(2);
   if (known) {
@@ -21,7 +21,7 @@ export interface NeighborInstance {
   values: Values;
 }
 
-/** What to ask the model for; `null` if it is not there (any more), or an older answer lacks the values. */
+/** The instance to request; `null` if the model was deleted or an older answer lacks the values. */
 export function neighborInstance(neighbor: Neighbor | null, models: Model[] | undefined): NeighborInstance | null {
   const values = neighbor?.values ?? null;
   const model = models?.find(({ id }) => id === neighbor?.model_id);

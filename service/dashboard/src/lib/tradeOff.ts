@@ -1,4 +1,4 @@
-/** What a threshold accepts and refuses, as the training of a classifier measured it. */
+/** The trade-off behind a threshold, as the training of a classifier measured it. */
 import type { TradeOffPoint } from "../api/types";
 
 /** `Accepts about 93 % of the objects of a class and refuses about 87 % of all others.`; `null` if it is not known. */
