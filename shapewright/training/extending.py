@@ -147,7 +147,7 @@ def plan_extension(
     learned = {model["digest"]: model for model in base.metadata["models"]}
     if missing := [model["name"] for digest, model in learned.items() if digest not in given]:
         raise ClassifierError(
-            f"the base has learned from {len(missing)} models that were not given in the same version: "
+            f"expected all models that the base has learned from; missing, or given in another version: "
             f"{', '.join(missing[:5])}{', …' if len(missing) > 5 else ''}",
             where="known",
         )
