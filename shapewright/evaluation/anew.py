@@ -5,8 +5,8 @@ from typing import Final
 import numpy as np
 from jaxtyping import Float, Int
 
-from shapewright.evaluation.edge_cutting import cut_edges, cut_some_edges
 from shapewright.mesh import TriangleMesh
+from shapewright.mesh.edge_cutting import cut_edges, cut_some_edges
 
 TOLERANCE: Final = 2e-4
 """How far the planes of the old triangles may be from a vertex that has moved, as a share of the half extent."""

@@ -12,8 +12,8 @@ from shapewright.estimation import EstimationSettings, Query, estimate
 from shapewright.estimation.noise import FEWEST_VERTICES, without_noise
 from shapewright.evaluation.anew import cut_anew
 from shapewright.evaluation.corruptions import CORRUPTIONS
-from shapewright.evaluation.edge_cutting import cut_edges
 from shapewright.mesh import TriangleMesh
+from shapewright.mesh.edge_cutting import cut_edges
 from shapewright.modeling import CompiledModel, compile_model
 
 

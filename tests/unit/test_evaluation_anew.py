@@ -9,8 +9,8 @@ from simple_shapes import box, crossing_sheets, goblet
 from models_store.library.shipped import load_shipped
 from shapewright.distances.surface import uniform_points
 from shapewright.evaluation.anew import cut_anew
-from shapewright.evaluation.edge_cutting import cut_edges, cut_some_edges
 from shapewright.mesh import TriangleMesh
+from shapewright.mesh.edge_cutting import cut_edges, cut_some_edges
 from shapewright.modeling import compile_model
 
 SHIPPED = ("table", "sword_sabre", "spider_ant", "bicycle")

@@ -16,8 +16,8 @@ from shapewright.evaluation.corruptions.noise import LONGEST_EDGE
 from shapewright.evaluation.corruptions.outliers import MARGIN, SIZE
 from shapewright.evaluation.corruptions.uneven import MOST_FACES, SHARE
 from shapewright.evaluation.depth_scans import STEEPEST
-from shapewright.evaluation.edge_cutting import cut_edges
 from shapewright.mesh import PointCloud, TriangleMesh
+from shapewright.mesh.edge_cutting import cut_edges
 
 SHAPES = {
     "box": box((3.0, 1.0, 0.4), (5.0, -2.0, 1.0)),

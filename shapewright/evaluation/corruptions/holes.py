@@ -5,8 +5,8 @@ from typing import Final
 import numpy as np
 
 from shapewright.evaluation.corruptions.corruption import Corruption, diagonal
-from shapewright.evaluation.edge_cutting import cut_edges
 from shapewright.mesh import TriangleMesh
+from shapewright.mesh.edge_cutting import cut_edges
 
 RADII: Final = (0.03, 0.09)
 """Smallest and largest radius of a patch, as shares of the diagonal."""

@@ -5,8 +5,8 @@ from typing import Final
 import numpy as np
 
 from shapewright.evaluation.corruptions.corruption import Corruption, diagonal
-from shapewright.evaluation.edge_cutting import cut_edges
 from shapewright.mesh import TriangleMesh
+from shapewright.mesh.edge_cutting import cut_edges
 
 LONGEST_EDGE: Final = 0.03
 """Edges are first cut to this share of the diagonal: noise on the corners of a large flat face would only tilt it."""

@@ -8,8 +8,8 @@ from jaxtyping import Float
 
 from shapewright.evaluation.corruptions.corruption import Corruption, diagonal
 from shapewright.evaluation.corruptions.decimated import decimate
-from shapewright.evaluation.edge_cutting import cut_edges, cut_some_edges
 from shapewright.mesh import TriangleMesh
+from shapewright.mesh.edge_cutting import cut_edges, cut_some_edges
 
 SHARE: Final = 0.35
 """Share of the area that is finely divided."""
