@@ -77,7 +77,9 @@ class TrainingSettingsIn(InBody):
         "triangles.",
     )
     breaks: (
-        Annotated[list[Literal["noise", "holes", "one_sided", "rounded", "sparse", "blocks"]], Field(max_length=6)]
+        Annotated[
+            list[Literal["noise", "holes", "one_sided", "rounded", "sparse", "blocks", "specks"]], Field(max_length=7)
+        ]
         | None
     ) = Field(default=None, description="Ways to break them.")
 

@@ -5,7 +5,7 @@ These are not the corruptions that evaluations measure with: they work different
 
 from typing import Final
 
-BREAK_NAMES: Final = ("noise", "holes", "one_sided", "rounded", "sparse", "blocks")
+BREAK_NAMES: Final = ("noise", "holes", "one_sided", "rounded", "sparse", "blocks", "specks")
 """Ways to break a variation, see :data:`shapewright.training.broken.breaking.BREAKS`."""
 MOST_BROKEN: Final = 0.7
 """The largest share of variations that can be broken; the whole ones are the exemplars."""

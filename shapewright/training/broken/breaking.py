@@ -13,8 +13,9 @@ from shapewright.training.broken.noise import shake_surface
 from shapewright.training.broken.one_sided import keep_visible
 from shapewright.training.broken.rounded import round_vertices
 from shapewright.training.broken.sparse import keep_few_points
+from shapewright.training.broken.specks import add_specks
 
-VERSION: Final = 3
+VERSION: Final = 4
 """Raise it when the same generator breaks a variation differently."""
 
 OFTEN: Final[Mapping[str, int]] = MappingProxyType({"one_sided": 3, "rounded": 2})
@@ -36,10 +37,13 @@ BREAKS: Final[Mapping[str, Break]] = MappingProxyType(
         "rounded": round_vertices,
         "sparse": keep_few_points,
         "blocks": build_of_blocks,
+        "specks": add_specks,
     }
 )
 """Every way to break a variation by its name."""
-SECOND_BREAKS: Final[Mapping[str, BreakMore]] = MappingProxyType({"noise": shake_surface, "holes": lose_patches})
+SECOND_BREAKS: Final[Mapping[str, BreakMore]] = MappingProxyType(
+    {"noise": shake_surface, "holes": lose_patches, "specks": add_specks}
+)
 """The breaks that can follow another one, by name."""
 
 

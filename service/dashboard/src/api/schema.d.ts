@@ -2729,7 +2729,7 @@ export interface components {
              * Breaks
              * @description Ways to break them.
              */
-            breaks?: ("noise" | "holes" | "one_sided" | "rounded" | "sparse" | "blocks")[] | null;
+            breaks?: ("noise" | "holes" | "one_sided" | "rounded" | "sparse" | "blocks" | "specks")[] | null;
         };
         /**
          * VerdictOut
