@@ -1,21 +1,35 @@
 """Sights: the ways to see a query that a classifier chooses from."""
 
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Final, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, UInt8
 
 from shapewright.classification.look import Look
+from shapewright.classification.open_side import open_side
 from shapewright.classification.pictures import draw
 from shapewright.classification.readings import Reading, plain_reading, readings
 from shapewright.mesh import PointCloud, TriangleMesh
 from shapewright.rendering.splats import splat_images
+from shapewright.rendering.views import views_about
+
+AROUND_RAD: Final = np.radians(30.0)
+"""How far from the direction that a scan was seen from the views of it go."""
 
 
 @runtime_checkable
 class Sight(Protocol):
     """One way to see a query."""
+
+    def more_views(
+        self, rng: np.random.Generator, count: int
+    ) -> tuple[Float[np.ndarray, "N 3 3"], Float[np.ndarray, " N"]]:
+        """Views that are worth having besides ``count`` evenly spread ones; none of most queries.
+
+        Returns:
+            Rotation matrices (N, 3, 3) and scales (N,).
+        """
 
     def images(
         self, rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]
@@ -32,6 +46,12 @@ class DrawnMesh:
 
     query: TriangleMesh | PointCloud
     look: Look
+
+    def more_views(
+        self, rng: np.random.Generator, count: int
+    ) -> tuple[Float[np.ndarray, "N 3 3"], Float[np.ndarray, " N"]]:
+        """No more views."""
+        return np.empty((0, 3, 3)), np.empty(0)
 
     def images(
         self, rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]
@@ -50,6 +70,20 @@ class DrawnPoints:
 
     reading: Reading
     look: Look
+
+    def more_views(
+        self, rng: np.random.Generator, count: int
+    ) -> tuple[Float[np.ndarray, "N 3 3"], Float[np.ndarray, " N"]]:
+        """As many from the side that a scan was seen from, and as many from behind, if there is such a side."""
+        side = open_side(self.reading.cloud.points)
+        if side is None:
+            return np.empty((0, 3, 3)), np.empty(0)
+        views = [
+            views_about(rng, direction, count, farthest_rad=AROUND_RAD, scale_range=self.look.scale_range)
+            for direction in (side, -side)
+        ]
+        rotations, scales = zip(*views, strict=True)
+        return np.concatenate(rotations), np.concatenate(scales)
 
     def images(
         self, rotations: Float[np.ndarray, "N 3 3"], scales: Float[np.ndarray, " N"]

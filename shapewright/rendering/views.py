@@ -38,6 +38,36 @@ def spread_views(
     return np.asarray(rolls @ directions @ whole), rng.uniform(*scale_range, size=count)
 
 
+def views_about(
+    rng: np.random.Generator,
+    direction: Float[np.ndarray, "3"],
+    count: int,
+    *,
+    farthest_rad: float,
+    scale_range: tuple[float, float] = SCALE_RANGE,
+) -> tuple[Float[np.ndarray, "N 3 3"], Float[np.ndarray, " N"]]:
+    """Views from one direction and from around it, turned about the line of sight at random.
+
+    Args:
+        rng: source of the random numbers.
+        direction: from the object to the viewer, a unit vector.
+        count: number of views.
+        farthest_rad: angle from the direction that no view exceeds; within, all views are equally probable.
+        scale_range: scales are drawn uniformly from it.
+
+    Returns:
+        Rotation matrices (N, 3, 3) and scales (N,).
+    """
+    heights = rng.uniform(np.cos(farthest_rad), 1.0, count)
+    tilts_rad, azimuths_rad, rolls_rad = np.arccos(heights), *rng.uniform(0.0, 2.0 * np.pi, (2, count))
+    aim = _look_from(direction)
+    rotations = [
+        _about("z", roll) @ _about("x", tilt) @ _about("z", azimuth) @ aim
+        for roll, tilt, azimuth in zip(rolls_rad, tilts_rad, azimuths_rad, strict=True)
+    ]
+    return np.array(rotations).reshape(count, 3, 3), rng.uniform(*scale_range, size=count)
+
+
 def even_views(count: int) -> Float[np.ndarray, "N 3 3"]:
     """Rotations that look at an object from evenly spread directions, the object's y axis upwards.
 

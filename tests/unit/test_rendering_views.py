@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from shapewright.rendering import even_views
-from shapewright.rendering.views import random_views, spread_views, three_quarter_view
+from shapewright.rendering.views import random_views, spread_views, three_quarter_view, views_about
 
 
 def smallest_angle(rotations: np.ndarray) -> float:
@@ -66,3 +66,25 @@ def test_the_three_quarter_view_turns_the_object_then_tips_it_towards_the_camera
     assert np.allclose(three_quarter_view("y", azimuth_rad=0.3, elevation_rad=0.2), turned)
     upright = Rotation.from_euler("x", -np.pi / 2).as_matrix()
     assert np.allclose(three_quarter_view("z", azimuth_rad=0.3, elevation_rad=0.2), turned @ upright)
+
+
+@pytest.mark.parametrize("direction", [(0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (0.6, 0.0, -0.8)])
+def test_views_about_a_direction_look_from_near_it(direction: tuple[float, float, float]) -> None:
+    rotations, scales = views_about(
+        np.random.default_rng(0), np.array(direction), 2000, farthest_rad=0.5, scale_range=(0.7, 0.9)
+    )
+    assert np.allclose(rotations @ rotations.transpose(0, 2, 1), np.eye(3))
+    assert np.allclose(np.linalg.det(rotations), 1.0)
+    cosines = rotations[:, 2] @ direction  # the third row is the direction to the viewer
+    assert cosines.min() >= np.cos(0.5) - 1e-9
+    assert np.isclose(cosines.mean(), 0.5 * (1.0 + np.cos(0.5)), atol=0.003), "evenly over the cap"
+    turned = rotations @ np.array(direction)  # where that direction points in the picture
+    assert np.abs(turned[:, :2].mean(axis=0)).max() < 0.02, "to all sides alike"
+    assert 0.7 <= scales.min() < 0.71
+    assert 0.89 < scales.max() <= 0.9
+
+
+def test_no_views_about_a_direction_are_empty_arrays() -> None:
+    rotations, scales = views_about(np.random.default_rng(0), np.array([0.0, 0.0, 1.0]), 0, farthest_rad=0.5)
+    assert rotations.shape == (0, 3, 3)
+    assert scales.shape == (0,)
