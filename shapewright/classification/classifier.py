@@ -136,16 +136,16 @@ class Classifier:
                 if fit is not None:
                     fits[self.class_names[number]] = fit
                     distances[number] = min(fit.distance, distances[number])
-        scores = class_scores(opened, distances)
-        probabilities = self._ranked(class_probabilities(pictured, distances))
         curve = self._curve("pictures" if distances is None else "geometry")
+        scores = _shifted(class_scores(opened, distances), curve)
+        probabilities = self._ranked(class_probabilities(pictured, distances))
         return Classification(
             class_name=next(iter(probabilities)),
             known=None if curve is None else curve.probability(float(scores.max())),
             probabilities=probabilities,
             picture_probabilities=self._ranked(pictured),
             scores=self._ranked(scores),
-            picture_scores=self._ranked(class_scores(opened)),
+            picture_scores=self._ranked(_shifted(class_scores(opened), self._curve("pictures"))),
             distances=None if distances is None else self._ranked(distances, lowest_first=True),
             fits=fits,
             neighbor=self._neighbor(next(iter(probabilities)), seen.exemplar_distances),
@@ -219,6 +219,10 @@ class Classifier:
 
 _Views = tuple[Float[np.ndarray, "N 3 3"], Float[np.ndarray, " N"]]
 """Rotations and scales."""
+
+
+def _shifted(scores: Float[np.ndarray, " C"], curve: KnownCurve | None) -> Float[np.ndarray, " C"]:
+    return scores if curve is None else curve.shifted(scores)
 
 
 def _joined(views: _Views, more: _Views) -> _Views:

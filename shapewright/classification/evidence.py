@@ -2,9 +2,11 @@
 
 A class's *score* is ``log(q + floor) - weight * d``: q is the mean over the views of its probability where ``none`` has
 a share, d the panorama distance of its nearest exemplar. It is high only if the pictures look like the class, like no
-other, and the geometry is near. The class is the most probable one, given that it is one of them; the highest score
-tells, through a logistic curve that procedural models alone have set, whether the mesh is *known*. Geometry weighs less
-in the score than in the choice of the class: scans are far from every exemplar, and nearer to their class all the same.
+other, and the geometry is near. Much that is none of the classes looks like some of them (like tables, say), so each
+class has a shift of its own, which comes off its score. The class is the most probable one, given that it is one of
+them; the highest score tells, through a logistic curve that procedural models alone have set, whether the mesh is
+*known*. Geometry weighs less in the score than in the choice of the class: scans are far from every exemplar, and
+nearer to their class all the same.
 """
 
 from dataclasses import dataclass
@@ -24,6 +26,10 @@ KNOWN_THRESHOLD: Final = 0.5
 """A mesh whose ``known`` is below is answered with ``unknown``."""
 REFUSED: Final = 0.86
 """Share of objects of no class, among those that a classifier is tried on, that are answered with ``unknown``."""
+_LEAST_OF_A_KIND: Final = 3
+"""Objects of the class, and of none, without which a class has no shift."""
+_TRUSTED: Final = 20
+"""Objects of no class whose threshold counts half."""
 UNKNOWN: Final = "unknown"
 """The answer for a mesh of none of the classes."""
 OTHER: Final = "other"
@@ -37,23 +43,33 @@ class KnownCurve:
     Args:
         slope: of the logistic curve, positive.
         intercept: added to slope * score.
+        shifts: of each class, by its number: how much higher than usual its scores must be. Classes beyond, which were
+            added later, have none.
     """
 
     slope: float
     intercept: float
+    shifts: tuple[float, ...] = ()
+
+    def shifted(self, scores: Float[np.ndarray, "*N C"]) -> Float[np.ndarray, "*N C"]:
+        """Return scores less the shifts of their classes, as :meth:`probability` takes them."""
+        shifts = np.zeros(scores.shape[-1])
+        shifts[: len(self.shifts)] = self.shifts
+        return np.asarray(scores - shifts)
 
     def probability(self, score: float) -> float:
-        """The curve's value at a score."""
+        """The curve's value at the highest score, shifted."""
         return float(1.0 / (1.0 + np.exp(-(self.slope * score + self.intercept))))
 
-    def to_dict(self) -> dict[str, float]:
+    def to_dict(self) -> dict[str, Any]:
         """Plain values, ready for JSON."""
-        return {"slope": self.slope, "intercept": self.intercept}
+        return {"slope": self.slope, "intercept": self.intercept, "shifts": list(self.shifts)}
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> "KnownCurve":
         """From :meth:`to_dict`; KeyError, TypeError or ValueError if it is something else."""
-        return cls(float(values["slope"]), float(values["intercept"]))
+        shifts = tuple(float(one) for one in values.get("shifts", ()))
+        return cls(float(values["slope"]), float(values["intercept"]), shifts)
 
 
 def class_scores(
@@ -85,11 +101,37 @@ def class_probabilities(
     return np.asarray(weights / weights.sum())
 
 
-def fit_known_curve(scores: Float[np.ndarray, " M"], is_known: Bool[np.ndarray, " M"]) -> KnownCurve:
-    """Fit a logistic curve of ``is_known`` to the best score, both kinds with the same weight, and then move it.
+def fit_known_curve(scores: Float[np.ndarray, "M C"], is_known: Bool[np.ndarray, " M"]) -> KnownCurve:
+    """Fit a logistic curve of ``is_known`` to the highest shifted score, and move it.
 
-    It is moved up to where it refuses :data:`REFUSED` of the objects of no class, if it refuses fewer. A small pull
-    toward slope 1 keeps the curve sane where the kinds do not overlap.
+    A class's shift goes from the threshold of all classes toward the one that objects with the highest score in that
+    class ask for, the farther the more objects of no class there are among them. The curve is moved up to where it
+    refuses :data:`REFUSED` of the objects of no class, if it refuses fewer.
+
+    Args:
+        scores: of each object and class.
+        is_known: whether an object is of one of the classes.
+    """
+    class_count = scores.shape[1]
+    highest, nearest = scores.max(axis=1), scores.argmax(axis=1)
+    usual = _threshold(*_fitted_curve(highest, is_known))
+    shifts = np.zeros(class_count)
+    for number in range(class_count if class_count > 1 else 0):
+        among = nearest == number
+        others = int((among & ~is_known).sum())
+        if min(others, int((among & is_known).sum())) >= _LEAST_OF_A_KIND:
+            own = _threshold(*_fitted_curve(highest[among], is_known[among]))
+            shifts[number] = (own - usual) * others / (others + _TRUSTED)
+    highest = (scores - shifts).max(axis=1)
+    slope, intercept = _fitted_curve(highest, is_known)
+    refusing = -slope * float(np.quantile(highest[~is_known], REFUSED)) + _log_odds(KNOWN_THRESHOLD)
+    return KnownCurve(slope, min(intercept, refusing), tuple(float(one) for one in shifts))
+
+
+def _fitted_curve(scores: Float[np.ndarray, " M"], is_known: Bool[np.ndarray, " M"]) -> tuple[float, float]:
+    """Return slope and intercept of a logistic curve; both kinds have the same weight.
+
+    A small pull toward slope 1 keeps the curve sane where the kinds do not overlap.
     """
     from scipy.optimize import minimize  # only training fits; loading scipy would double the time to the first answer
 
@@ -102,9 +144,12 @@ def fit_known_curve(scores: Float[np.ndarray, " M"], is_known: Bool[np.ndarray, 
 
     middle = (scores[is_known].mean() + scores[~is_known].mean()) / 2
     found = minimize(loss, np.array([0.0, -middle]), method="Nelder-Mead")
-    slope = float(np.exp(found.x[0]))
-    refusing = -slope * float(np.quantile(scores[~is_known], REFUSED)) + _log_odds(KNOWN_THRESHOLD)
-    return KnownCurve(slope, min(float(found.x[1]), refusing))
+    return float(np.exp(found.x[0])), float(found.x[1])
+
+
+def _threshold(slope: float, intercept: float) -> float:
+    """Return the score at which a curve is one half."""
+    return -intercept / slope
 
 
 def _log_odds(probability: float) -> float:

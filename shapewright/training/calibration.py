@@ -119,17 +119,15 @@ def calibrate(
     has_none = values.shape[2] > data.class_count
 
     def judged(name: str, by_class: Float[np.ndarray, "M C"], scores: Float[np.ndarray, "M C"]) -> KnownCurve | None:
-        best = scores.max(axis=1)
+        curve = fit_known_curve(scores[whole], known[whole]) if has_none else None
+        best = (scores if curve is None else curve.shifted(scores)).max(axis=1)
         if forecast.any():
             right = by_class[forecast].argmax(axis=1) == labels[forecast]
             metrics[f"left_out_accuracy{name}"] = float(right.mean())
             metrics[f"left_out_calibration_error{name}"] = calibration_error(by_class[forecast].max(axis=1), right)
-            if has_none:
+            if curve is not None:
                 metrics[f"left_out_auroc{name}"] = auroc(best[forecast], best[~known])
-        if not has_none:
-            return None
-        curve = fit_known_curve(best[whole], known[whole])
-        if forecast.any():
+        if curve is not None and forecast.any():
             inside, outside = ([curve.probability(one) for one in best[whole & kind]] for kind in (known, ~known))
             points = measure_trade_off(inside, outside)
             metrics[trade_off_key(geometry=not name)] = [point.to_dict() for point in points]

@@ -80,7 +80,7 @@ def test_the_curve_separates_and_is_one_half_between(middle, gap, seed, counts) 
     known = middle + gap / 2 + rng.uniform(-0.1, 0.1, counts[0])
     unknown = middle - gap / 2 + rng.uniform(-0.1, 0.1, counts[1])
     is_known = np.arange(sum(counts)) < counts[0]
-    curve = fit_known_curve(np.concatenate([known, unknown]), is_known)
+    curve = fit_known_curve(np.concatenate([known, unknown])[:, None], is_known)
     assert curve.slope > 0
     assert curve.probability(middle) == pytest.approx(0.5, abs=0.2), "whatever their numbers"
     assert min(curve.probability(float(score)) for score in known) > 0.5
@@ -91,7 +91,7 @@ def test_the_curve_separates_and_is_one_half_between(middle, gap, seed, counts) 
 def test_the_curve_of_kinds_that_overlap_refuses_most_objects_of_no_class(distance: float) -> None:
     rng = np.random.default_rng(0)
     known, unknown = rng.normal(distance / 2, 1.0, 4000), rng.normal(-distance / 2, 1.0, 4000)
-    curve = fit_known_curve(np.concatenate([known, unknown]), np.arange(8000) < 4000)
+    curve = fit_known_curve(np.concatenate([known, unknown])[:, None], np.arange(8000) < 4000)
     assert curve.slope == pytest.approx(distance, rel=0.25), "the log odds of two such normal distributions"
     refused = np.mean([curve.probability(float(score)) < KNOWN_THRESHOLD for score in unknown])
     assert refused >= REFUSED - 0.01
@@ -101,15 +101,40 @@ def test_the_curve_of_kinds_that_overlap_refuses_most_objects_of_no_class(distan
         assert curve.intercept == pytest.approx(0.0, abs=0.2), "the honest curve refuses more than that anyway"
 
 
+def test_a_class_that_others_look_like_asks_for_higher_scores() -> None:
+    """Objects of no class score two higher in the second class than in the first, so its threshold is higher, too."""
+    rng = np.random.default_rng(0)
+    of_class, is_known = np.repeat([0, 1], 400), np.arange(800) % 2 == 0
+    scores = np.full((800, 2), -20.0)
+    scores[np.arange(800), of_class] = rng.normal(np.where(is_known, 4.0, 2.0 * of_class), 0.3)
+    curve = fit_known_curve(scores, is_known)
+    assert curve.shifts[1] - curve.shifts[0] == pytest.approx(1.0, abs=0.2), "half as much, as it lies in the middle"
+    kept = (of_class == 0) | is_known
+    few = fit_known_curve(scores[kept], is_known[kept])
+    assert few.shifts[1] == 0.0, "no object of no class looks like it"
+
+
+def test_classes_that_were_added_later_have_no_shift() -> None:
+    curve = KnownCurve(1.0, 0.0, (0.5, -0.25))
+    assert np.allclose(curve.shifted(np.zeros((2, 3))), [[-0.5, 0.25, 0.0]] * 2)
+
+
 @given(st.floats(0.01, 50.0), st.floats(-50.0, 50.0), st.floats(-10.0, 10.0), st.floats(0.0, 5.0))
 def test_the_curve_rises_and_survives_a_file(slope, intercept, score, step) -> None:
-    curve = KnownCurve(slope, intercept)
+    curve = KnownCurve(slope, intercept, (0.5, score))
     assert 0.0 <= curve.probability(score) <= curve.probability(score + step) <= 1.0
     assert KnownCurve.from_dict(json.loads(json.dumps(curve.to_dict()))) == curve
 
 
 @pytest.mark.parametrize(
-    "values", [{}, {"slope": 1.0}, {"slope": "steep", "intercept": 0}, {"slope": None, "intercept": 0}]
+    "values",
+    [
+        {},
+        {"slope": 1.0},
+        {"slope": "steep", "intercept": 0},
+        {"slope": None, "intercept": 0},
+        {"slope": 1.0, "intercept": 0.0, "shifts": ["far"]},
+    ],
 )
 def test_a_damaged_curve_is_refused(values) -> None:
     with pytest.raises((KeyError, TypeError, ValueError)):
