@@ -28,6 +28,9 @@ from shapewright.network.session import BATCH_SIZE, make_session
 from shapewright.rendering.views import spread_views
 
 DEFAULT_VIEWS: Final = 10
+GROUND_PREFERENCE: Final = 0.25
+"""How much lower the best score may be without the ground than with it, for the ground to be left out all the same; 0
+for scans of one side, of which a table top is often all there is."""
 
 
 class Classifier:
@@ -101,8 +104,8 @@ class Classifier:
     ) -> Classification:
         """Draw a query from several sides, average the class probabilities (paper section 3.2), compare its geometry.
 
-        An object that may stand on the ground is looked at with and without it, and the better score counts. A scan of
-        one side is looked at more often from there.
+        An object that may stand on the ground is looked at with and without it. A scan of one side is looked at more
+        often from there; its geometry, far from that of every whole object, only tells whether it is known.
 
         Args:
             query: any triangle soup, or a point cloud.
@@ -120,10 +123,14 @@ class Classifier:
             raise ClassifierError("a fit begins at exemplars, and there are none", where="models")
         rng = rng or np.random.default_rng(0)
         even = self._views(views, rng)
-        seen = max(
-            (self._seen(sight, _joined(even, sight.more_views(rng, views))) for sight in sights_of(query, self.look)),
-            key=lambda one: one.scores.max(),
+        with_ground, *without = (
+            self._seen(sight, even, sight.more_views(rng, views)) for sight in sights_of(query, self.look)
         )
+        seen = with_ground
+        preference = 0.0 if with_ground.is_open else GROUND_PREFERENCE
+        for other in without:
+            if other.scores.max() > with_ground.scores.max() - preference:
+                seen = other
         pictured, opened, distances = seen.pictured, seen.opened, seen.distances
         fits = None
         if self.exemplars is not None and models is not None:
@@ -138,7 +145,7 @@ class Classifier:
                     distances[number] = min(fit.distance, distances[number])
         curve = self._curve("pictures" if distances is None else "geometry")
         scores = _shifted(class_scores(opened, distances), curve)
-        probabilities = self._ranked(class_probabilities(pictured, distances))
+        probabilities = self._ranked(class_probabilities(pictured, None if seen.is_open else distances))
         return Classification(
             class_name=next(iter(probabilities)),
             known=None if curve is None else curve.probability(float(scores.max())),
@@ -173,8 +180,8 @@ class Classifier:
             raise ClassifierError("at least one view is needed", where="views")
         return spread_views(rng, views, scale_range=self.look.scale_range)
 
-    def _seen(self, sight: Sight, views: "_Views") -> "_Seen":
-        images = sight.images(*views)
+    def _seen(self, sight: Sight, even: "_Views", more: "_Views") -> "_Seen":
+        images = sight.images(*_joined(even, more))
         per_view, open_per_view = self._run(images)
         opened = open_per_view.mean(axis=0, dtype=np.float64)
         descriptor = every = distances = None
@@ -192,6 +199,7 @@ class Classifier:
             exemplar_distances=every,
             distances=distances,
             scores=class_scores(opened, distances),
+            is_open=len(more[1]) > 0,
         )
 
     def _run(self, images: UInt8[np.ndarray, "N H W 3"]) -> tuple[Float[np.ndarray, "N C"], Float[np.ndarray, "N C"]]:
@@ -231,7 +239,7 @@ def _joined(views: _Views, more: _Views) -> _Views:
 
 @dataclass(frozen=True, eq=False)
 class _Seen:
-    """What a sight says about the classes, in the order of their numbers."""
+    """What a sight says about the classes, in the order of their numbers, and whether it is of one side only."""
 
     images: UInt8[np.ndarray, "N H W 3"]
     per_view: Float[np.ndarray, "N C"]
@@ -241,6 +249,7 @@ class _Seen:
     exemplar_distances: Float[np.ndarray, " M"] | None
     distances: Float[np.ndarray, " C"] | None
     scores: Float[np.ndarray, " C"]
+    is_open: bool
 
 
 def files_digest(onnx: bytes, exemplars: Path | None) -> str:

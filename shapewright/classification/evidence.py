@@ -17,7 +17,7 @@ from jaxtyping import Bool, Float
 
 GEOMETRY_WEIGHT: Final = 5.0
 """How much of a log-probability a unit of panorama distance is worth where the class is chosen. From 0 to 10 little
-changes; point clouds ask for more, one-sided scans for less."""
+changes; point clouds ask for more."""
 KNOWN_WEIGHT: Final = 3.0
 """The same in the score, which tells what is known."""
 FLOOR: Final = 1e-3
