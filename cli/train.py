@@ -35,12 +35,12 @@ def train(
     variations: Annotated[
         int | None,
         typer.Option(
-            min=1, help="Random variations of each class (default: 1000; with --extend 200).", show_default=False
+            min=1, help="Random variations of each class (default: 2000; with --extend 200).", show_default=False
         ),
     ] = None,
     images: Annotated[
         int | None,
-        typer.Option(min=1, help="Images of each variation (default: 10; with --extend 4).", show_default=False),
+        typer.Option(min=1, help="Images of each variation (default: 5; with --extend 4).", show_default=False),
     ] = None,
     epochs: Annotated[int | None, typer.Option(min=1, help="Passes over the images.", show_default=False)] = None,
     seed: Annotated[

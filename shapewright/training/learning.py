@@ -94,7 +94,7 @@ def train_classifier(
 
     Args:
         classes: compiled models of each class; several models of a class share its variations.
-        settings: 1000 variations of 10 pictures a class, as the paper has them, if not given.
+        settings: 2000 variations of 5 pictures a class if not given.
         progress: hears of every block of variations and every epoch.
         negatives: compiled models of things that are none of the classes, for telling what is unknown.
         store: keeps features and descriptors for the next training, which computes only what is new; by default

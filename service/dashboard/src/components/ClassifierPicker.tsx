@@ -19,7 +19,7 @@ interface ClassifierPickerProps {
 const EFFORTS = [
   { id: "quick", label: "Quick", variations: 60, imagesPerVariation: 5 },
   { id: "good", label: "Good", variations: 300, imagesPerVariation: 5 },
-  { id: "full", label: "Full", variations: 1000, imagesPerVariation: 10 },
+  { id: "full", label: "Full", variations: 2000, imagesPerVariation: 5 },
 ] as const;
 
 type Effort = (typeof EFFORTS)[number];
