@@ -225,7 +225,7 @@ class Classifier:
         return None if values is None else KnownCurve.from_dict(values)
 
 
-_Views = tuple[Float[np.ndarray, "N 3 3"], Float[np.ndarray, " N"]]
+_Views = tuple[Float[np.ndarray, "_ 3 3"], Float[np.ndarray, " _"]]
 """Rotations and scales."""
 
 

@@ -89,7 +89,7 @@ def test_choices_are_those_of_the_library() -> None:
 def test_the_library_defaults_are_within_the_limits_of_the_service() -> None:
     training, estimation = TrainingSettings().to_dict(), EstimationSettings().to_dict()
     estimation.pop("alignment")
-    assert TrainingSettingsIn(**training).checked()["variations"] == 1000
+    assert TrainingSettingsIn(**training).checked()["variations"] == training["variations"]
     paper = TrainingSettings.paper().to_dict()
     assert TrainingSettingsIn(**paper).checked() | {"scale_range": paper["scale_range"]} == paper
     assert EstimationSettingsIn(**estimation).checked()["samples"] == 10_000
