@@ -31,7 +31,10 @@ def classify(
         ),
     ],
     classifier: ClassifierFile = None,
-    views: Annotated[int, typer.Option(min=1, max=1000, help="Pictures taken of each mesh.")] = 10,
+    views: Annotated[
+        int,
+        typer.Option(min=1, max=1000, help="Pictures taken of each mesh; three times as many of a scan of one side."),
+    ] = 10,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random views.")] = 0,
     fit: Annotated[
         bool,

@@ -17,7 +17,9 @@ class ClassificationIn(InBody):
         default=None,
         description="null: the ready classifier that ships; where there is none, the newest that succeeded.",
     )
-    views: Annotated[int, Field(ge=1, le=200)] = Field(default=10, description="Images to average over.")
+    views: Annotated[int, Field(ge=1, le=200)] = Field(
+        default=10, description="Images to average over; three times as many of a scan of one side."
+    )
     seed: Seed = 0
     fit: bool = Field(
         default=False,

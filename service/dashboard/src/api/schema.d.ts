@@ -876,7 +876,7 @@ export interface components {
             classifier_id?: string | null;
             /**
              * Views
-             * @description Images to average over.
+             * @description Images to average over; three times as many of a scan of one side.
              * @default 10
              */
             views: number;
