@@ -60,6 +60,10 @@ _MUCH_FARTHER: Final = (1.5, 0.1)
 are given up."""
 _SURE: Final = 1e-3
 """Mean distance between surfaces, in half extents, below which a query is solved: its options stay as they are."""
+_ALIKE: Final = 1.05
+"""Z-buffer distances of two beginnings that differ by no more than this factor agree."""
+_NEARER: Final = 0.9
+"""Options are settled again if a fit by surfaces is nearer, by this factor, than what they were settled from before."""
 _SOLVED: Final = 0.03
 """Z-buffer distance below which a fit by surfaces is not polished: pixels are not finer than that."""
 
@@ -111,14 +115,17 @@ class Search:
             Cancelled: ``report`` raised it.
         """
         self._message, self._fraction, self._rng = "first orientations", 0.0, rng
+        self._nearest = np.inf
         with Pool(self._ask) as pool:
             self._pool = pool
             candidates = self._approached()
             if not candidates:
                 raise EstimationError("no instance of the models has an area", where="models")
-            begun = 1
-            while not self._is_solved() and begun < self._most_approaches():
-                candidates = _sorted([*candidates, *self._approached()])
+            begun, agrees = 1, False
+            while not self._is_solved() and not agrees and begun < self._most_approaches():
+                others = self._approached()
+                agrees = _agrees(candidates, others)
+                candidates = _sorted([*candidates, *others])
                 begun += 1
             if self.settled is None:
                 self._say(0.6, "options")
@@ -227,7 +234,13 @@ class Search:
             self._keep("fit", fine_distance(self.target, one.candidate))
         if not found or not found[0].follows:
             return
-        settled = settling.converged(found[0]) if self._is_solved() else settling.settle(found[0])
+        nearest, self._nearest = self._nearest, min(self._nearest, found[0].distance)
+        if self._is_solved():
+            settled = settling.converged(found[0])
+        elif found[0].distance < _NEARER * nearest:
+            settled = settling.settle(found[0])
+        else:
+            settled = found[0]  # options were settled from a fit that was about as near
         if self.settled is None or settled.distance < self.settled.distance:
             self.settled = replace(settled, candidate=fine_distance(self.target, settled.candidate))
             self._keep("fit", self.settled.candidate)
@@ -297,6 +310,14 @@ def _hopeful(candidates: Sequence[Candidate]) -> list[Candidate]:
     """Return those of some sorted candidates that are not much farther than the nearest one."""
     factor, more = _MUCH_FARTHER
     return [one for one in candidates if one.zbuffer <= factor * candidates[0].zbuffer + more]
+
+
+def _agrees(candidates: Sequence[Candidate], others: Sequence[Candidate]) -> bool:
+    """Whether two beginnings found fits of one model that are equally near: there is hardly a nearer one."""
+    if not others or candidates[0].model is not others[0].model:
+        return False
+    distances = [candidates[0].zbuffer, others[0].zbuffer]
+    return max(distances) <= _ALIKE * min(distances)
 
 
 def _sorted(candidates: Iterable[Candidate]) -> list[Candidate]:
