@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from shapewright.classification.evidence import KnownCurve
+from shapewright.classification.evidence import KnownCurves
 from shapewright.classification.file_format import FORMAT, FORMAT_VERSION, METADATA_KEY
 from shapewright.classification.look import Look
 from shapewright.classification.trade_off import trade_off_of
@@ -35,9 +35,9 @@ def checked_metadata(session: Any, where: str | None) -> dict[str, Any]:
             )
         class_names = metadata["class_names"]
         size = _checked_look(metadata["rendering"], where).image_size
-        for curve in (metadata["known"]["pictures"], metadata["known"]["geometry"]):
-            if curve is not None:
-                KnownCurve.from_dict(curve)
+        for curves in (metadata["known"]["pictures"], metadata["known"]["geometry"]):
+            if curves is not None:
+                KnownCurves.from_dict(curves)
         for geometry in (False, True):
             trade_off_of(dict(metadata["metrics"]), geometry=geometry)
         usual = metadata["usual_distances"]

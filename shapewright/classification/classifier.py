@@ -11,7 +11,7 @@ from jaxtyping import Float, UInt8
 
 from shapewright.classification.answer import Classification
 from shapewright.classification.checked_metadata import checked_metadata
-from shapewright.classification.evidence import KnownCurve, class_probabilities, class_scores
+from shapewright.classification.evidence import KnownCurve, KnownCurves, class_probabilities, class_scores
 from shapewright.classification.exemplars import Exemplars
 from shapewright.classification.file_format import exemplars_file
 from shapewright.classification.look import Look
@@ -105,7 +105,8 @@ class Classifier:
         """Draw a query from several sides, average the class probabilities (paper section 3.2), compare its geometry.
 
         An object that may stand on the ground is looked at with and without it. A scan of one side is looked at more
-        often from there; its geometry, far from that of every whole object, only tells whether it is known.
+        often from there; its geometry, far from that of every whole object, only tells whether it is known. For scans
+        less is enough to be known.
 
         Args:
             query: any triangle soup, or a point cloud.
@@ -143,7 +144,7 @@ class Classifier:
                 if fit is not None:
                     fits[self.class_names[number]] = fit
                     distances[number] = min(fit.distance, distances[number])
-        curve = self._curve("pictures" if distances is None else "geometry")
+        curve = self._curve("pictures" if distances is None else "geometry", seen)
         scores = _shifted(class_scores(opened, distances), curve)
         probabilities = self._ranked(class_probabilities(pictured, None if seen.is_open else distances))
         return Classification(
@@ -152,7 +153,7 @@ class Classifier:
             probabilities=probabilities,
             picture_probabilities=self._ranked(pictured),
             scores=self._ranked(scores),
-            picture_scores=self._ranked(_shifted(class_scores(opened), self._curve("pictures"))),
+            picture_scores=self._ranked(_shifted(class_scores(opened), self._curve("pictures", seen))),
             distances=None if distances is None else self._ranked(distances, lowest_first=True),
             fits=fits,
             neighbor=self._neighbor(next(iter(probabilities)), seen.exemplar_distances),
@@ -200,6 +201,7 @@ class Classifier:
             distances=distances,
             scores=class_scores(opened, distances),
             is_open=len(more[1]) > 0,
+            is_rough=sight.is_rough or len(more[1]) > 0,
         )
 
     def _run(self, images: UInt8[np.ndarray, "N H W 3"]) -> tuple[Float[np.ndarray, "N C"], Float[np.ndarray, "N C"]]:
@@ -220,9 +222,9 @@ class Classifier:
         order = np.argsort(values if lowest_first else -values, kind="stable")
         return {self.class_names[i]: float(values[i]) for i in order}
 
-    def _curve(self, evidence: str) -> KnownCurve | None:
+    def _curve(self, evidence: str, seen: "_Seen") -> KnownCurve | None:
         values = self.metadata["known"][evidence]
-        return None if values is None else KnownCurve.from_dict(values)
+        return None if values is None else KnownCurves.from_dict(values).of(is_rough=seen.is_rough)
 
 
 _Views = tuple[Float[np.ndarray, "_ 3 3"], Float[np.ndarray, " _"]]
@@ -239,7 +241,7 @@ def _joined(views: _Views, more: _Views) -> _Views:
 
 @dataclass(frozen=True, eq=False)
 class _Seen:
-    """What a sight says about the classes, in the order of their numbers, and whether it is of one side only."""
+    """What a sight says about the classes, in the order of their numbers; whether it is of one side, or of a scan."""
 
     images: UInt8[np.ndarray, "N H W 3"]
     per_view: Float[np.ndarray, "N C"]
@@ -250,6 +252,7 @@ class _Seen:
     distances: Float[np.ndarray, " C"] | None
     scores: Float[np.ndarray, " C"]
     is_open: bool
+    is_rough: bool
 
 
 def files_digest(onnx: bytes, exemplars: Path | None) -> str:

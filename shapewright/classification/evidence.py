@@ -6,7 +6,8 @@ other, and the geometry is near. Much that is none of the classes looks like som
 class has a shift of its own, which comes off its score. The class is the most probable one, given that it is one of
 them; the highest score tells, through a logistic curve that procedural models alone have set, whether the mesh is
 *known*. Geometry weighs less in the score than in the choice of the class: scans are far from every exemplar, and
-nearer to their class all the same.
+nearer to their class all the same. Scores of scans are lower altogether, so they have a curve of their own: *unknown*
+is to mean the object and not the scanner.
 """
 
 from dataclasses import dataclass
@@ -72,6 +73,35 @@ class KnownCurve:
         return cls(float(values["slope"]), float(values["intercept"]), shifts)
 
 
+@dataclass(frozen=True)
+class KnownCurves:
+    """The curves of one sort of evidence.
+
+    Args:
+        whole: for meshes that show no trace of a scanner.
+        rough: for point clouds, noisy meshes and scans of one side.
+    """
+
+    whole: KnownCurve
+    rough: KnownCurve
+
+    def of(self, *, is_rough: bool) -> KnownCurve:
+        """The curve for a query."""
+        return self.rough if is_rough else self.whole
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values, ready for JSON."""
+        return {"whole": self.whole.to_dict(), "rough": self.rough.to_dict()}
+
+    @classmethod
+    def from_dict(cls, values: dict[str, Any]) -> "KnownCurves":
+        """From :meth:`to_dict`, or from a single curve, as earlier trainings wrote it; errors as there."""
+        if "whole" not in values:
+            single = KnownCurve.from_dict(values)
+            return cls(single, single)
+        return cls(KnownCurve.from_dict(values["whole"]), KnownCurve.from_dict(values["rough"]))
+
+
 def class_scores(
     open_probabilities: Float[np.ndarray, "*N C"], distances: Float[np.ndarray, "*N C"] | None = None
 ) -> Float[np.ndarray, "*N C"]:
@@ -131,16 +161,17 @@ def fit_known_curve(scores: Float[np.ndarray, "M C"], is_known: Bool[np.ndarray,
 def _fitted_curve(scores: Float[np.ndarray, " M"], is_known: Bool[np.ndarray, " M"]) -> tuple[float, float]:
     """Return slope and intercept of a logistic curve; both kinds have the same weight.
 
-    A small pull toward slope 1 keeps the curve sane where the kinds do not overlap.
+    A small pull toward slope 1 keeps the curve sane where the kinds do not overlap; a few objects are pulled more.
     """
     from scipy.optimize import minimize  # only training fits; loading scipy would double the time to the first answer
 
     weight = np.where(is_known, 0.5 / max(is_known.sum(), 1), 0.5 / max((~is_known).sum(), 1))
     sign = np.where(is_known, 1.0, -1.0)
+    pull = 0.01 + 1.0 / len(scores)
 
     def loss(parameters: np.ndarray) -> float:
         slope, intercept = np.exp(parameters[0]), parameters[1]
-        return float(weight @ np.logaddexp(0.0, -sign * (slope * scores + intercept)) + 0.01 * parameters[0] ** 2)
+        return float(weight @ np.logaddexp(0.0, -sign * (slope * scores + intercept)) + pull * parameters[0] ** 2)
 
     middle = (scores[is_known].mean() + scores[~is_known].mean()) / 2
     found = minimize(loss, np.array([0.0, -middle]), method="Nelder-Mead")

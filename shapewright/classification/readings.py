@@ -4,7 +4,7 @@ Noise is smoothed, debris beside the object goes. Where an object may stand on t
 without it; which of the two is right, the classes decide.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -40,11 +40,13 @@ class Reading:
         points: on the surface, in the query's unit.
         spacing: side of the square that each point has to itself on the surface.
         surface: the mesh that the points lie on; ``None`` for a point cloud.
+        was_noisy: whether this is the smooth surface beneath a noisy one.
     """
 
     points: Float[np.ndarray, "N 3"]
     spacing: float
     surface: TriangleMesh | None
+    was_noisy: bool = False
 
     @property
     def cloud(self) -> SplatCloud:
@@ -93,13 +95,16 @@ def readings(query: TriangleMesh | PointCloud) -> list[Reading]:
         first = Reading(whole.points[kept], whole.spacing, None)
         ground = is_ground(first.points)
         return [first] if ground is None else [first, Reading(first.points[~ground], first.spacing, None)]
-    whole, places = _mesh_reading(without_noise(query))
+    smooth = without_noise(query)
+    was_noisy = smooth is not query
+    whole, places = _mesh_reading(smooth)
     debris = is_debris(whole.points, whole.spacing)
     cleared = _part(whole, places, ~debris) if debris.any() else None
     first, places = (whole, places) if cleared is None else _mesh_reading(cleared)
     ground = is_ground(first.points)
     lifted = None if ground is None else _part(first, places, ~ground)
-    return [first] if lifted is None else [first, _mesh_reading(lifted)[0]]
+    found = [first] if lifted is None else [first, _mesh_reading(lifted)[0]]
+    return [replace(one, was_noisy=was_noisy) for one in found]
 
 
 def _mesh_reading(mesh: TriangleMesh) -> tuple[Reading, Int[np.ndarray, " N"]]:

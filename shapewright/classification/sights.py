@@ -22,6 +22,11 @@ AROUND_RAD: Final = np.radians(30.0)
 class Sight(Protocol):
     """One way to see a query."""
 
+    @property
+    def is_rough(self) -> bool:
+        """Whether it shows a scanner's traces: a cloud of points, or noise."""
+        ...
+
     def more_views(
         self, rng: np.random.Generator, count: int
     ) -> tuple[Float[np.ndarray, "N 3 3"], Float[np.ndarray, " N"]]:
@@ -47,6 +52,11 @@ class DrawnMesh:
     query: TriangleMesh | PointCloud
     look: Look
 
+    @property
+    def is_rough(self) -> bool:
+        """Triangles are drawn as they are."""
+        return False
+
     def more_views(
         self, rng: np.random.Generator, count: int
     ) -> tuple[Float[np.ndarray, "N 3 3"], Float[np.ndarray, " N"]]:
@@ -70,6 +80,11 @@ class DrawnPoints:
 
     reading: Reading
     look: Look
+
+    @property
+    def is_rough(self) -> bool:
+        """Whether it has no faces, or had noise."""
+        return self.reading.surface is None or self.reading.was_noisy
 
     def more_views(
         self, rng: np.random.Generator, count: int

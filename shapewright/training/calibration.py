@@ -4,7 +4,8 @@ Held-out variations of a model that was learned are far easier than real objects
 folds: a head learns without a fold's models and is tried on their variations, and on objects of no class that
 it did not learn from either. What it says there sets the temperature and the curve that tells known from unknown, and
 is the honest forecast among the figures of a training. Where there is nothing to leave out (classes of one model each)
-held-out variations have to do for both, and there is no forecast. Labels of real meshes have no part in it.
+held-out variations have to do for both, and there is no forecast. Labels of real meshes have no part in it. Scans have
+a curve of their own, set by the broken ones of these objects.
 
 Most real objects resemble a model that was learned, and some resemble one that was left out. So each fold is also tried
 on held-out variations of the models it has learned; the forecast counts the left-out models alone.
@@ -17,7 +18,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy.optimize import minimize_scalar
 
-from shapewright.classification.evidence import KnownCurve, auroc, class_probabilities, class_scores, fit_known_curve
+from shapewright.classification.evidence import KnownCurves, auroc, class_probabilities, class_scores, fit_known_curve
 from shapewright.classification.exemplars import Exemplars
 from shapewright.classification.trade_off import measure_trade_off, trade_off_key
 from shapewright.distances.panorama import PanoramaDescriptor
@@ -47,7 +48,7 @@ class Calibration:
 
     Args:
         temperature: of the class values.
-        pictures: curve of ``known`` for pictures alone; ``None`` if no objects of no class were learned from.
+        pictures: curves of ``known`` for pictures alone; ``None`` if no objects of no class were learned from.
         geometry: the same with distances to exemplars; ``None`` without exemplars.
         usual_distances: of each class, the panorama distance to its nearest exemplar within which nine of ten of the
             tried variations lie; ``None`` without exemplars.
@@ -57,8 +58,8 @@ class Calibration:
     """
 
     temperature: float
-    pictures: KnownCurve | None
-    geometry: KnownCurve | None
+    pictures: KnownCurves | None
+    geometry: KnownCurves | None
     usual_distances: tuple[float, ...] | None
     metrics: dict[str, Any]
 
@@ -115,23 +116,27 @@ def calibrate(
     probabilities = softmax(closed / temperature).mean(axis=1)
     opened = softmax(values / temperature)[..., : data.class_count].mean(axis=1)
     metrics: dict[str, Any] = {"left_out_meshes": int(forecast.sum())}
-    whole = _whole(plan, settings, known, meshes)
+    whole, rough = _whole_and_rough(plan, settings, known, meshes)
     has_none = values.shape[2] > data.class_count
 
-    def judged(name: str, by_class: Float[np.ndarray, "M C"], scores: Float[np.ndarray, "M C"]) -> KnownCurve | None:
-        curve = fit_known_curve(scores[whole], known[whole]) if has_none else None
-        best = (scores if curve is None else curve.shifted(scores)).max(axis=1)
+    def judged(name: str, by_class: Float[np.ndarray, "M C"], scores: Float[np.ndarray, "M C"]) -> KnownCurves | None:
+        curves = None
+        if has_none:
+            curves = KnownCurves(*(fit_known_curve(scores[kind], known[kind]) for kind in (whole, rough)))
+        best = (scores if curves is None else curves.whole.shifted(scores)).max(axis=1)
         if forecast.any():
             right = by_class[forecast].argmax(axis=1) == labels[forecast]
             metrics[f"left_out_accuracy{name}"] = float(right.mean())
             metrics[f"left_out_calibration_error{name}"] = calibration_error(by_class[forecast].max(axis=1), right)
-            if curve is not None:
+            if curves is not None:
                 metrics[f"left_out_auroc{name}"] = auroc(best[forecast], best[~known])
-        if curve is not None and forecast.any():
-            inside, outside = ([curve.probability(one) for one in best[whole & kind]] for kind in (known, ~known))
+        if curves is not None and forecast.any():
+            inside, outside = (
+                [curves.whole.probability(one) for one in best[whole & kind]] for kind in (known, ~known)
+            )
             points = measure_trade_off(inside, outside)
             metrics[trade_off_key(geometry=not name)] = [point.to_dict() for point in points]
-        return curve
+        return curves
 
     pictures = judged("_pictures", probabilities, class_scores(opened))
     geometry = usual = None
@@ -143,15 +148,17 @@ def calibrate(
     return Calibration(temperature, pictures, geometry, usual, metrics)
 
 
-def _whole(
+def _whole_and_rough(
     plan: Plan, settings: TrainingSettings, known: Bool[np.ndarray, " M"], meshes: Int[np.ndarray, " M"]
-) -> Bool[np.ndarray, " M"]:
-    """Return which objects are whole: what is known is told by them, as a scanner's faults would move the curve.
+) -> tuple[Bool[np.ndarray, " M"], Bool[np.ndarray, " M"]]:
+    """Return which objects are whole, and which are broken: each have a curve of their own.
 
-    All count if the whole ones are of one kind only.
+    All count for both where one lacks objects of the classes or of none.
     """
-    whole = ~np.concatenate([share.broken(settings) for share in plan.shares])[meshes]
-    return whole if (whole & known).any() and (whole & ~known).any() else np.ones_like(whole)
+    rough = np.concatenate([share.broken(settings) for share in plan.shares])[meshes]
+    every = np.ones_like(rough)
+    whole, rough = (kind if (kind & known).any() and (kind & ~known).any() else every for kind in (~rough, rough))
+    return whole, rough
 
 
 def _usual_distances(near: Float[np.ndarray, "K C"], labels: Int[np.ndarray, " K"]) -> tuple[float, ...]:

@@ -13,6 +13,7 @@ from shapewright.classification.evidence import (
     KNOWN_THRESHOLD,
     REFUSED,
     KnownCurve,
+    KnownCurves,
     auroc,
     class_probabilities,
     class_scores,
@@ -114,6 +115,13 @@ def test_a_class_that_others_look_like_asks_for_higher_scores() -> None:
     assert few.shifts[1] == 0.0, "no object of no class looks like it"
 
 
+def test_a_few_objects_make_nobody_certain() -> None:
+    """Ten objects that do not overlap would be told apart by a curve as steep as can be."""
+    scores = np.array([-0.4, -0.3, *[-2.5, -2.2, -2.0] * 2, -1.9, -1.8])[:, None]
+    curve = fit_known_curve(scores, np.arange(10) < 2)
+    assert 0.5 < curve.probability(-0.3) < curve.probability(0.0) < 0.9999
+
+
 def test_classes_that_were_added_later_have_no_shift() -> None:
     curve = KnownCurve(1.0, 0.0, (0.5, -0.25))
     assert np.allclose(curve.shifted(np.zeros((2, 3))), [[-0.5, 0.25, 0.0]] * 2)
@@ -124,6 +132,14 @@ def test_the_curve_rises_and_survives_a_file(slope, intercept, score, step) -> N
     curve = KnownCurve(slope, intercept, (0.5, score))
     assert 0.0 <= curve.probability(score) <= curve.probability(score + step) <= 1.0
     assert KnownCurve.from_dict(json.loads(json.dumps(curve.to_dict()))) == curve
+
+
+def test_a_scan_has_a_curve_of_its_own_where_the_file_has_one() -> None:
+    whole, rough = KnownCurve(2.0, 1.0, (0.1,)), KnownCurve(3.0, 4.0)
+    curves = KnownCurves.from_dict(json.loads(json.dumps(KnownCurves(whole, rough).to_dict())))
+    assert (curves.of(is_rough=False), curves.of(is_rough=True)) == (whole, rough)
+    earlier = KnownCurves.from_dict({"slope": 2.0, "intercept": 1.0})
+    assert earlier.whole == earlier.rough == KnownCurve(2.0, 1.0)
 
 
 @pytest.mark.parametrize(

@@ -65,6 +65,13 @@ def test_the_same_query_is_read_the_same_twice(bumpy) -> None:
         assert same(plain_reading(query), plain_reading(query))
 
 
+def test_a_reading_knows_that_its_mesh_was_noisy(bumpy) -> None:
+    assert not any(reading.was_noisy for reading in readings(bumpy))
+    for query in (add_noise(bumpy, 0.005, np.random.default_rng(0)), add_ground(bumpy, 1.5, np.random.default_rng(0))):
+        noisy = add_noise(query, 0.005, np.random.default_rng(0))
+        assert all(reading.was_noisy for reading in readings(noisy))
+
+
 def test_vertices_without_faces_do_not_count(bumpy) -> None:
     more = TriangleMesh(np.concatenate([bumpy.vertices, [[100.0, 0, 0]]]), bumpy.faces)
     assert same(readings(more)[0], readings(bumpy)[0])

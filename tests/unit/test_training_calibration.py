@@ -29,15 +29,20 @@ SETTINGS = TrainingSettings(
 )
 
 
-def calibrated(centre_of, settings: TrainingSettings = SETTINGS) -> Calibration:
-    """Calibrate two classes of two models each, whose features lie about a centre for each source."""
+def calibrated(centre_of, settings: TrainingSettings = SETTINGS, *, weakened: float = 1.0) -> Calibration:
+    """Calibrate two classes of two models each, whose features lie about a centre for each source.
+
+    Those of broken variations are multiplied by a number.
+    """
     names = ("a1", "a2", "b1", "b2")
     one, two, three, four = (BoxModel(name, [((0, 0, 0), (1, 1, 1))]) for name in names)
     plan = plan_learning({"a": [one, two], "b": [three, four]}, (), settings)
     rng, store, backbone = np.random.default_rng(0), MemoryStore(), load_backbone()
     for chunk, _ in plan.chunks:
         noise = 0.3 * rng.normal(size=(chunk.count, settings.images_per_variation, 8))
-        store.put(features_key(chunk, settings, backbone), (noise + centre_of(chunk.source.name)).astype(np.float16))
+        strength = np.where(chunk.broken(settings), weakened, 1.0)[:, None, None]
+        features = noise + strength * centre_of(chunk.source.name)
+        store.put(features_key(chunk, settings, backbone), features.astype(np.float16))
     return calibrate(plan, load_features(plan, settings, backbone, store), settings)
 
 
@@ -52,7 +57,7 @@ def test_models_that_are_like_their_class_are_told_without_having_been_learned()
     assert found.metrics["left_out_auroc_pictures"] > 0.99
     assert 40 <= found.metrics["left_out_meshes"] <= 80, "some of each model"
     assert found.pictures is not None
-    assert found.pictures.probability(0.0) > 0.5
+    assert found.pictures.whole.probability(0.0) > 0.5
     assert found.geometry is None
 
 
@@ -76,6 +81,18 @@ def test_variations_of_models_that_were_learned_take_part_in_the_curve() -> None
     points = found.metrics["trade_off_pictures"]
     assert max(point["accepted_known"] for point in points if point["refused_other"] == 1.0) > 0.25
     assert found.metrics["left_out_auroc_pictures"] < 0.5, "the forecast is of left-out models alone"
+
+
+def test_broken_objects_that_look_less_like_their_class_get_a_curve_that_asks_for_less() -> None:
+    places = {"a1": 0, "a2": 0, "b1": 1, "b2": 1}
+    found = calibrated(lambda name: direction(places.get(name, 2)), weakened=0.1)
+    curves = found.pictures
+    assert curves is not None
+    threshold = -curves.whole.intercept / curves.whole.slope
+    assert curves.rough.probability(threshold) > 0.6
+    alike = calibrated(lambda name: direction(places.get(name, 2))).pictures
+    assert alike is not None
+    assert alike.rough.probability(-alike.whole.intercept / alike.whole.slope) == pytest.approx(0.5, abs=0.02)
 
 
 def test_without_objects_of_no_class_there_is_no_curve() -> None:
