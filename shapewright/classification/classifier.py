@@ -11,7 +11,7 @@ from jaxtyping import Float, UInt8
 
 from shapewright.classification.answer import Classification
 from shapewright.classification.checked_metadata import checked_metadata
-from shapewright.classification.evidence import KnownCurve, KnownCurves, class_probabilities, class_scores
+from shapewright.classification.evidence import KnownCurves, class_probabilities, class_scores
 from shapewright.classification.exemplars import Exemplars
 from shapewright.classification.file_format import exemplars_file
 from shapewright.classification.look import Look
@@ -144,16 +144,16 @@ class Classifier:
                 if fit is not None:
                     fits[self.class_names[number]] = fit
                     distances[number] = min(fit.distance, distances[number])
-        curve = self._curve("pictures" if distances is None else "geometry", seen)
-        scores = _shifted(class_scores(opened, distances), curve)
+        curves = self._curves("pictures" if distances is None else "geometry")
+        scores = _shifted(class_scores(opened, distances), curves, seen)
         probabilities = self._ranked(class_probabilities(pictured, None if seen.is_open else distances))
         return Classification(
             class_name=next(iter(probabilities)),
-            known=None if curve is None else curve.probability(float(scores.max())),
+            known=None if curves is None else curves.probability(float(scores.max())),
             probabilities=probabilities,
             picture_probabilities=self._ranked(pictured),
             scores=self._ranked(scores),
-            picture_scores=self._ranked(_shifted(class_scores(opened), self._curve("pictures", seen))),
+            picture_scores=self._ranked(_shifted(class_scores(opened), self._curves("pictures"), seen)),
             distances=None if distances is None else self._ranked(distances, lowest_first=True),
             fits=fits,
             neighbor=self._neighbor(next(iter(probabilities)), seen.exemplar_distances),
@@ -222,17 +222,13 @@ class Classifier:
         order = np.argsort(values if lowest_first else -values, kind="stable")
         return {self.class_names[i]: float(values[i]) for i in order}
 
-    def _curve(self, evidence: str, seen: "_Seen") -> KnownCurve | None:
+    def _curves(self, evidence: str) -> KnownCurves | None:
         values = self.metadata["known"][evidence]
-        return None if values is None else KnownCurves.from_dict(values).of(is_rough=seen.is_rough)
+        return None if values is None else KnownCurves.from_dict(values)
 
 
 _Views = tuple[Float[np.ndarray, "_ 3 3"], Float[np.ndarray, " _"]]
 """Rotations and scales."""
-
-
-def _shifted(scores: Float[np.ndarray, " C"], curve: KnownCurve | None) -> Float[np.ndarray, " C"]:
-    return scores if curve is None else curve.shifted(scores)
 
 
 def _joined(views: _Views, more: _Views) -> _Views:
@@ -253,6 +249,10 @@ class _Seen:
     scores: Float[np.ndarray, " C"]
     is_open: bool
     is_rough: bool
+
+
+def _shifted(scores: Float[np.ndarray, " C"], curves: KnownCurves | None, seen: _Seen) -> Float[np.ndarray, " C"]:
+    return scores if curves is None else curves.shifted(scores, is_rough=seen.is_rough)
 
 
 def files_digest(onnx: bytes, exemplars: Path | None) -> str:

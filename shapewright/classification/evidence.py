@@ -85,9 +85,19 @@ class KnownCurves:
     whole: KnownCurve
     rough: KnownCurve
 
-    def of(self, *, is_rough: bool) -> KnownCurve:
-        """The curve for a query."""
-        return self.rough if is_rough else self.whole
+    def shifted(self, scores: Float[np.ndarray, "*N C"], *, is_rough: bool) -> Float[np.ndarray, "*N C"]:
+        """Return scores less the shifts of their classes, on the scale of whole meshes.
+
+        So scores of scans and of whole meshes can be compared, and :meth:`probability` takes both.
+        """
+        if not is_rough:
+            return self.whole.shifted(scores)
+        log_odds = self.rough.slope * self.rough.shifted(scores) + self.rough.intercept
+        return np.asarray((log_odds - self.whole.intercept) / self.whole.slope)
+
+    def probability(self, score: float) -> float:
+        """The probability for the highest score, shifted."""
+        return self.whole.probability(score)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain values, ready for JSON."""

@@ -137,7 +137,11 @@ def test_the_curve_rises_and_survives_a_file(slope, intercept, score, step) -> N
 def test_a_scan_has_a_curve_of_its_own_where_the_file_has_one() -> None:
     whole, rough = KnownCurve(2.0, 1.0, (0.1,)), KnownCurve(3.0, 4.0)
     curves = KnownCurves.from_dict(json.loads(json.dumps(KnownCurves(whole, rough).to_dict())))
-    assert (curves.of(is_rough=False), curves.of(is_rough=True)) == (whole, rough)
+    assert (curves.whole, curves.rough) == (whole, rough)
+    scores = np.array([-2.0, -1.0])
+    for curve, is_rough in ((whole, False), (rough, True)):
+        best = float(curves.shifted(scores, is_rough=is_rough).max())
+        assert curves.probability(best) == pytest.approx(curve.probability(float(curve.shifted(scores).max())))
     earlier = KnownCurves.from_dict({"slope": 2.0, "intercept": 1.0})
     assert earlier.whole == earlier.rough == KnownCurve(2.0, 1.0)
 
