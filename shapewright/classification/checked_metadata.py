@@ -35,9 +35,8 @@ def checked_metadata(session: Any, where: str | None) -> dict[str, Any]:
             )
         class_names = metadata["class_names"]
         size = _checked_look(metadata["rendering"], where).image_size
-        for curves in (metadata["known"]["pictures"], metadata["known"]["geometry"]):
-            if curves is not None:
-                KnownCurves.from_dict(curves)
+        known = (metadata["known"]["pictures"], metadata["known"]["geometry"])
+        pairs = [KnownCurves.from_dict(curves) for curves in known if curves is not None]
         for geometry in (False, True):
             trade_off_of(dict(metadata["metrics"]), geometry=geometry)
         usual = metadata["usual_distances"]
@@ -45,6 +44,7 @@ def checked_metadata(session: Any, where: str | None) -> dict[str, Any]:
             (usual is None or ([float(one) for one in usual] == usual and len(usual) == len(class_names)))
             and isinstance(class_names, list)
             and all(isinstance(name, str) for name in class_names)
+            and all(len(one.shifts) <= len(class_names) for pair in pairs for one in (pair.whole, pair.rough))
             and all(isinstance(model["digest"], str) for model in metadata["models"])
             and isinstance(metadata["metrics"], dict)
         )

@@ -69,8 +69,10 @@ class KnownCurve:
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> "KnownCurve":
         """From :meth:`to_dict`; KeyError, TypeError or ValueError if it is something else."""
-        shifts = tuple(float(one) for one in values.get("shifts", ()))
-        return cls(float(values["slope"]), float(values["intercept"]), shifts)
+        slope, shifts = float(values["slope"]), tuple(float(one) for one in values.get("shifts", ()))
+        if not slope > 0:
+            raise ValueError(f"the slope of a curve is {slope}")
+        return cls(slope, float(values["intercept"]), shifts)
 
 
 @dataclass(frozen=True)

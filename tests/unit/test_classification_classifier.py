@@ -249,6 +249,10 @@ def test_damaged_and_foreign_files_are_refused(trained, tmp_path):
         "older": {**whole, "version": FORMAT_VERSION - 1},
         "newer": {**whole, "version": FORMAT_VERSION + 1},
         "a curve of another kind": {**whole, "known": {"pictures": {"slope": "steep"}, "geometry": None}},
+        "more shifts than classes": {
+            **whole,
+            "known": {"pictures": {"slope": 1.0, "intercept": 0.0, "shifts": [0.1] * 9}, "geometry": None},
+        },
         "no word on what is known": {key: value for key, value in whole.items() if key != "known"},
         "an unknown style": {**whole, "rendering": {**whole["rendering"], "style": "cubist"}},
         "an unknown framing": {**whole, "rendering": {**whole["rendering"], "framing": "gold"}},
@@ -291,6 +295,7 @@ import sys
 import numpy as np
 from shapewright import TriangleMesh
 from shapewright.classification import load_classifier
+assert "numba" not in sys.modules, "kernels are loaded where they are first called"
 mesh = TriangleMesh(np.eye(4, 3), np.array([[0, 1, 2], [0, 1, 3], [1, 2, 3], [0, 2, 3]]))
 answer = load_classifier({str(path)!r}).classify(mesh, views=2)
 assert answer.distances is not None

@@ -154,6 +154,7 @@ def test_a_scan_has_a_curve_of_its_own_where_the_file_has_one() -> None:
         {"slope": "steep", "intercept": 0},
         {"slope": None, "intercept": 0},
         {"slope": 1.0, "intercept": 0.0, "shifts": ["far"]},
+        {"slope": 0.0, "intercept": 0.0},
     ],
 )
 def test_a_damaged_curve_is_refused(values) -> None:
