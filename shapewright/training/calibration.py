@@ -3,9 +3,9 @@
 Held-out variations of a model that was learned are far easier than real objects are. So the models are split into
 folds: a head learns without a fold's models and is tried on their variations, and on objects of no class that
 it did not learn from either. What it says there sets the temperature and the curve that tells known from unknown, and
-is the honest forecast among the figures of a training. Where there is nothing to leave out (classes of one model each)
-held-out variations have to do for both, and there is no forecast. Labels of real meshes have no part in it. Scans have
-a curve of their own, set by the broken ones of these objects.
+is the honest forecast among the figures of a training. Where there is nothing to leave out (classes of one model each),
+held-out variations set both, and there is no forecast. Labels of real meshes play no part. Scans have a curve of their
+own, set by those of these objects that were broken.
 
 Most real objects resemble a model that was learned, and some resemble one that was left out. So each fold is also tried
 on held-out variations of the models it has learned; the forecast counts the left-out models alone.
@@ -151,9 +151,9 @@ def calibrate(
 def _whole_and_rough(
     plan: Plan, settings: TrainingSettings, known: Bool[np.ndarray, " M"], meshes: Int[np.ndarray, " M"]
 ) -> tuple[Bool[np.ndarray, " M"], Bool[np.ndarray, " M"]]:
-    """Return which objects are whole, and which are broken: each have a curve of their own.
+    """Return which objects set the curve of whole meshes, and which that of scans: the whole and the broken ones.
 
-    All count for both where one lacks objects of the classes or of none.
+    All set a curve for which there are no objects of the classes, or none of no class.
     """
     rough = np.concatenate([share.broken(settings) for share in plan.shares])[meshes]
     every = np.ones_like(rough)
